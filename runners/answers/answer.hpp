@@ -46,6 +46,8 @@ std::optional<Sentence> say_untouched(const Choices& study);
 
 /// Why there is no value of what is known by works alone.
 inline constexpr const char* no_work_form = "the scheme declares no work form";
+/// Whether a case that ran has no value of what is told in contact alone, since nothing ever touched its stop.
+bool of_untouched_stop(const std::string& measure, const CaseRecord& record);
 /// Why a case that ran has no value of a measure; "" where that is not known.
 std::string why_without(const std::string& measure, const CaseRecord& record);
 

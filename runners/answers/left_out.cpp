@@ -10,11 +10,15 @@
 // What a study's measures cannot say.
 namespace ricochet::answers {
 
+bool of_untouched_stop(const std::string& name, const CaseRecord& record) {
+  const std::size_t stop = name.find('[');
+  return stop != std::string::npos && record.status == Status::done && !measure(record, name) &&
+         why_left_out(record, name).empty() && measure(record, "contact_time" + name.substr(stop)) == 0.0;
+}
+
 std::string why_without(const std::string& name, const CaseRecord& record) {
   if (const std::string& reason = why_left_out(record, name); !reason.empty()) return reason;
-  // What is told of the time in contact alone.
-  if (const std::size_t stop = name.find('['); stop != std::string::npos)
-    if (measure(record, "contact_time" + name.substr(stop)) == 0.0) return "the stop is never touched";
+  if (of_untouched_stop(name, record)) return "the stop is never touched";
   const MeasureWords words = measure_words(name);
   const bool of_energy = words.scale == "energy_brought_in" || words.most || name.starts_with("work_of_");
   if (!of_energy) return "";

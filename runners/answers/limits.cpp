@@ -78,10 +78,21 @@ std::optional<double> bound_of(const MeasureWords& words, bool share) {
   return share && words.scale == "energy_brought_in" ? std::optional(1.0) : std::nullopt;
 }
 
+namespace {
+
+/// Whether friction at some stop changes between stick and slip, within a step as an impact does.
+bool sticks_and_slips(const CaseRecord& record) {
+  return std::any_of(record.measures.begin(), record.measures.end(),
+                     [](const auto& one) { return one.second > 0 && one.first.starts_with("stick_slip_changes["); });
+}
+
+}  // namespace
+
 Errors errors_of(const Cases& cases) {
   std::map<std::string, double> impacts;  // by seed
   for (const CaseRecord* record : cases) {
     const auto count = measure(*record, "impacts");
+    if (sticks_and_slips(*record)) return Errors::saw_toothed;
     if (!count) continue;
     if (*count > 0 && !measure(*record, contact_steps_measure)) return Errors::saw_toothed;
     const auto [met, fresh] = impacts.emplace(axis(*record, "seed").text(), *count);

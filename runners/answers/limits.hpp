@@ -65,8 +65,8 @@ MeasureLimits limits_of(const Choices& study, const std::string& measure, bool c
 /// Whether loads in time, supports or stops in motion worked in a case: steady loads have a potential.
 bool is_driven(const CaseRecord& record);
 
-/// How the values of these cases err: saw-toothed where a rigid law throws points back, or where the number of impacts
-/// changes with the step.
+/// How the values of these cases err: saw-toothed where a rigid law throws points back, where friction changes between
+/// stick and slip, or where the number of impacts changes with the step.
 Errors errors_of(const Cases& cases);
 
 /// Whether a column is none of methods, steps and meshes. Seeds and ways to march are among those that are.

@@ -33,10 +33,15 @@ bool breaks(const Bounds& bounds, double low, double high) {
 
 Kept kept(const Line& line, const Bounds& bounds) {
   Kept out;
+  // What nothing touches stays below any limit of what is told in contact.
+  if (line.point.of_untouched_stop && bounds.below && !bounds.above && !doubtful(line.point))
+    out.verdict = Verdict::yes;
   if (!line.known() || !line.estimate().has_interval() || unresolved(line.point)) return out;
   const Estimate& one = line.estimate();
   bool all = keeps(bounds, one.least(), one.most()), beyond = breaks(bounds, one.least(), one.most());
-  if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
+  const MeasureInfo* info = measure_info(line.measure + (line.stop.empty() ? "" : "[" + line.stop + "]"));
+  const bool mean = !line.point.halves.empty() || (info && info->mean);
+  if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && !mean) {
     const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
     out.draws = draws.size();
     for (const auto& [seed, value] : draws) {

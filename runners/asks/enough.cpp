@@ -142,11 +142,11 @@ class Enough {
     }
     const double asked = within_ * std::abs(one.value);
     out.enough = *one.u() <= asked;
-    if (out.enough && (!one.unknown().empty() || one.doubt * *one.u() > asked || doubtful(line.point))) {
+    if (out.enough && (!one.unknown().empty() || *one.doubted_u() > asked || doubtful(line.point))) {
       out.known = out.enough = false;
-      out.why = !one.unknown().empty()         ? one.unknown()
-                : one.doubt * *one.u() > asked ? "it " + one.unsettled()
-                                               : "the runs are doubtful";
+      out.why = !one.unknown().empty()     ? one.unknown()
+                : *one.doubted_u() > asked ? "it " + one.unsettled()
+                                           : "the runs are doubtful";
       return out;
     }
     const double mesh = one.mesh.value_or(0), step = one.step.value_or(0), sampling = one.sampling.value_or(0);

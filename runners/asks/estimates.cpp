@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
@@ -33,6 +34,11 @@ std::string Estimate::unknown() const {
 std::optional<double> Estimate::u() const {
   if (grows || (!step && !mesh && !sampling)) return std::nullopt;
   return step.value_or(0) + mesh.value_or(0) + sampling.value_or(0);
+}
+
+std::optional<double> Estimate::doubted_u() const {
+  const std::optional<double> known = u();
+  return known ? std::optional(*known + (doubt - 1) * (step.value_or(0) + mesh.value_or(0))) : std::nullopt;
 }
 
 namespace {
@@ -73,7 +79,20 @@ std::optional<double> left_by(const std::optional<Limit>& limit) {
   return limit && limit->uncertainty && std::isfinite(*limit->uncertainty) ? limit->uncertainty : std::nullopt;
 }
 
-/// Half the interval of the mean at one size: of many draws between them, of few what each knows of itself.
+/// Whether draws scatter more than their own intervals explain, Σ(x − x̄)²/σ² against χ² at 95 %.
+bool scatter_more(const std::vector<double>& values, const std::vector<double>& halves) {
+  constexpr double normal = 1.96, level = 0.95;  // σ of half a 95 % interval
+  const auto n = static_cast<double>(values.size());
+  if (n < 2) return false;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (const double apart = values[k] - mean; apart != 0) sum += std::pow(normal * apart / halves[k], 2);
+  return !(sum <= boost::math::quantile(boost::math::chi_squared(n - 1), level));
+}
+
+/// Half the interval of the mean at one size: of many draws between them, of few what each knows of itself, unless they
+/// contradict each other.
 void put_sampling(Estimate& out, const BySeed& draws, const BySeed* halves) {
   std::vector<double> values, own;
   for (const auto& [seed, value] : draws) {
@@ -82,7 +101,7 @@ void put_sampling(Estimate& out, const BySeed& draws, const BySeed* halves) {
   }
   constexpr std::size_t few = 4;
   const bool all = !own.empty() && own.size() == values.size();
-  if (all && values.size() < few) {
+  if (all && values.size() < few && !scatter_more(values, own)) {
     double squares = 0;
     for (const double one : own) squares += one * one;
     out.sampling = std::sqrt(squares) / static_cast<double>(own.size());

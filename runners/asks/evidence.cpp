@@ -41,8 +41,8 @@ bool untouched(const Point& point) {
 }
 
 bool doubtful(const Point& point) {
-  return std::all_of(point.behind.begin(), point.behind.end(),
-                     [](const CaseRecord* one) { return !one->reasons.empty(); });
+  const Cases& those = point.behind.empty() ? point.cases : point.behind;
+  return std::all_of(those.begin(), those.end(), [](const CaseRecord* one) { return !one->reasons.empty(); });
 }
 
 namespace {
@@ -151,8 +151,19 @@ std::vector<std::string> Evidence::columns_of(const std::string& choice) const {
   std::vector<std::string> out;
   if (axis_role(choice) != choice) return {choice};
   for (const std::string& column : results().columns)
-    if (column == choice || axis_role(column) == choice) out.push_back(column);
+    if (column == choice || (axis_role(column) == choice && !is_crossed(column, choice))) out.push_back(column);
   return out;
+}
+
+// Whether every method of a role has the same values of a restitution: it is the scene's then, and pairs agree in it.
+bool Evidence::is_crossed(const std::string& column, const std::string& role) const {
+  if (!column.ends_with(".restitution")) return false;
+  std::map<std::string, std::set<std::string>> values;
+  for (const CaseRecord& record : results().cases)
+    values[study_.text(record, role)].insert(study_.text(record, column));
+  const std::set<std::string>& first = values.begin()->second;
+  return values.size() > 1 && first.size() > 1 &&
+         std::all_of(values.begin(), values.end(), [&](const auto& one) { return one.second == first; });
 }
 
 bool Evidence::has_shares(const std::string& name, const Cases& cases) const {
@@ -373,7 +384,12 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     solves.push_back(counts ? 0 : of_solves * values);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
-    if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
+    if (!point.finest) {
+      point.none = left_out(measure_of_all, point.cases).reasons.front().said();
+      point.of_untouched_stop = std::all_of(point.cases.begin(), point.cases.end(), [&](const CaseRecord* one) {
+        return answers::of_untouched_stop(measure_of_all, *one);
+      });
+    }
     out.push_back(std::move(point));
   }
   for (std::size_t k = 0; k < out.size(); ++k) {

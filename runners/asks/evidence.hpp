@@ -29,7 +29,7 @@ struct Estimate {
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
   bool one_mesh = false;             ///< of several that were asked one alone has a value
   bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
-  double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
+  double doubt = 1;                  ///< of what is not settled: so many times step + mesh may be left to its limit
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
   bool has_step = true;  ///< whether its study has a step to refine
@@ -40,13 +40,15 @@ struct Estimate {
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.
   std::optional<double> u() const;
+  /// The same with all that refinement may leave.
+  std::optional<double> doubted_u() const;
   /// Whether value ± u holds all that leaves it open.
   bool has_interval() const { return u() && unknown().empty(); }
   double low() const { return beyond ? value : value - u().value_or(0); }
   double high() const { return beyond ? INFINITY : value + u().value_or(0); }
   /// The same by which a yes or a no is told.
-  double least() const { return beyond ? value : value - doubt * u().value_or(0); }
-  double most() const { return beyond ? INFINITY : value + doubt * u().value_or(0); }
+  double least() const { return beyond ? value : value - doubted_u().value_or(0); }
+  double most() const { return beyond ? INFINITY : value + doubted_u().value_or(0); }
 };
 
 /// A size of refinement: the step (1 where none varies), the elements (1 likewise).
@@ -66,7 +68,8 @@ struct Point {
   double floor = 0;  ///< what round-off makes of a value
   Errors errors = Errors::smooth;
   std::optional<Estimate> estimate;
-  std::string none;  ///< why it has no value
+  std::string none;                ///< why it has no value
+  bool of_untouched_stop = false;  ///< whether that is because nothing ever touches its stop
   /// Equal for points of a compliant law that differ in the time scheme alone: as the step shrinks their values have
   /// one limit. "" where no limit is known to be shared.
   std::string limit;
@@ -144,6 +147,7 @@ class Evidence {
   double repeats_after() const;
 
  private:
+  bool is_crossed(const std::string& column, const std::string& role) const;
   /// What a value is off by beside round-off, in the unit of its measure: what its floor says. Of a time that is
   /// counted in whole steps (`by_steps`: of which the points know the size) these steps, of a peak of contact what two
   /// steps may miss between them. 0 of others.

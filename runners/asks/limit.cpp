@@ -87,8 +87,8 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     if (verdict == Verdict::no && row.reason.empty()) row.reason = beyond_text(found);
     if (verdict == Verdict::open && row.reason.empty()) row.reason = why_open(line, bounds);
     out.rows.push_back(std::move(row));
-    // What is refused is left out by name.
-    if (line.applies() || !any_applies)
+    // What is refused is left out by name, and of what is never touched there is nothing to tell.
+    if (verdict == Verdict::yes ? line.known() : line.applies() || !any_applies)
       (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
   }
   const auto [range, at] = range_of(lines, bounds);

@@ -130,6 +130,12 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
       out.words.factor = 1;
       out.words.unit = unit_of_rotation(info->unit);
     }
+  // An oscillator has no length that a norm would run along.
+  const Json& study = evidence.results().study;
+  if (study.is_object() && study.contains("scene") &&
+      study["scene"].value("structure", Json::object()).value("type", "") == "oscillator")
+    for (const auto& [norm, plain] : {std::pair("m^3/2", "m"), {"m^3/2/s", "m/s"}})
+      if (out.words.unit == norm) out.words.unit = plain;
   // Levels are said in the study's order, whatever is asked of them.
   std::vector<std::string> ordered;
   for (const std::string& column : evidence.results().columns)

@@ -10,11 +10,12 @@ namespace {
 /// even one that still grows. Nothing where it is not known. `disproved`: whether another scheme disproves what
 /// refinement tells of one of the two; it then tells nothing of their difference.
 std::optional<double> left_open(const Estimate& estimate, const std::optional<double>& both, double floor,
-                                bool disproved, double doubt = 1) {
+                                bool disproved, bool doubted) {
   if (!estimate.unknown().empty()) return std::nullopt;
   if (disproved && both) return std::max(*both, floor);
   // Of a single size on both sides, and nothing drawn, nothing is known.
-  std::optional<double> u = estimate.grows ? std::nullopt : std::optional(doubt * estimate.u().value_or(0));
+  std::optional<double> u =
+      estimate.grows ? std::nullopt : std::optional((doubted ? estimate.doubted_u() : estimate.u()).value_or(0));
   if (both) u = std::min(u.value_or(*both), *both);
   return u ? std::optional(std::max(*u, floor)) : std::nullopt;
 }
@@ -79,15 +80,14 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
         return std::all_of(sized.second.begin(), sized.second.end(), [](const auto& one) { return one.second == 0; });
       });
   const bool has_step = first.estimate && first.estimate->has_step;
-  const auto own_u = [&](const Point& point) -> std::optional<double> {
-    const bool there = point.finest == finest && point.estimate && point.estimate->has_interval();
-    return there ? point.estimate->u() : std::nullopt;
+  const auto own_u = [&](const Point& point, bool doubted) -> std::optional<double> {
+    if (point.finest != finest || !point.estimate || !point.estimate->has_interval()) return std::nullopt;
+    return doubted ? point.estimate->doubted_u() : point.estimate->u();
   };
-  const std::optional<double> first_u = own_u(first), second_u = own_u(second);
-  const auto both = [&](double weight_of_first, double unit, bool doubted = false) -> std::optional<double> {
-    if (!first_u || !second_u) return std::nullopt;
-    const auto doubt = [&](const Point& point) { return doubted ? point.estimate->doubt : 1; };
-    return (doubt(second) * *second_u + weight_of_first * doubt(first) * *first_u) / unit;
+  const auto both = [&](double weight_of_first, double unit, bool doubted) -> std::optional<double> {
+    const std::optional<double> of_first = own_u(first, doubted), of_second = own_u(second, doubted);
+    if (!of_first || !of_second) return std::nullopt;
+    return (*of_second + weight_of_first * *of_first) / unit;
   };
   const Errors errors = std::max(first.errors, second.errors);
   const Estimate estimate =
@@ -96,24 +96,31 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   out.one_limit = !first.limit.empty() && first.limit == second.limit;
   const bool disproved =
       (first.estimate && first.estimate->disproved) || (second.estimate && second.estimate->disproved);
-  const auto open_of = [&](const Estimate& one, const std::optional<double>& of_both, double least, double doubt) {
-    std::optional<double> u = left_open(one, of_both, least, disproved, doubt);
+  const auto open_of = [&](const Estimate& one, const std::optional<double>& of_both, double least, bool doubted) {
+    std::optional<double> u = left_open(one, of_both, least, disproved, doubted);
     if (u && out.one_limit) u = std::max(*u, std::abs(one.value));
     return u;
   };
-  out.u = open_of(estimate, both(1, 1), floor, 1);
-  out.u_most = open_of(estimate, both(1, 1, true), floor, estimate.doubt);
+  out.u = open_of(estimate, both(1, 1, false), floor, false);
+  out.u_most = open_of(estimate, both(1, 1, true), floor, true);
   if (!out.u) out.unknown = why_not(estimate);
   // What is not told from zero is no base of shares.
-  if (std::abs(out.base) <= std::max(floor, first_u.value_or(0))) return out;
+  if (std::abs(out.base) <= std::max(floor, own_u(first, false).value_or(0))) return out;
   // Both may move with the step while one stays the same share of the other.
   std::map<Size, std::map<std::string, double>> shares, share_halves;
   for (const auto& [size, by_seed] : differences) {
-    double base = 0;
-    for (const auto& [seed, difference] : by_seed)
-      base += first.values.at(size).at(seed) / static_cast<double>(by_seed.size());
+    const std::map<std::string, double>& firsts = first.values.at(size);
+    double base = 0, mean = 0;
+    for (const auto& [seed, difference] : by_seed) {
+      base += firsts.at(seed) / static_cast<double>(by_seed.size());
+      mean += difference / static_cast<double>(by_seed.size());
+    }
     if (std::abs(base) <= floor) continue;
-    for (const auto& [seed, difference] : by_seed) shares[size][seed] = difference / std::abs(base);
+    // The ratio R of means; its scatter is that of (D − R B)/B̄ to first order: what is the same share of each is none.
+    const double ratio = mean / base;
+    for (const auto& [seed, difference] : by_seed)
+      shares[size][seed] = by_seed.size() == 1 ? difference / std::abs(base)
+                                               : (mean + difference - ratio * firsts.at(seed)) / std::abs(base);
     if (const auto own = halves.find(size); own != halves.end())
       for (const auto& [seed, half] : own->second) share_halves[size][seed] = half / std::abs(base);
   }
@@ -121,8 +128,8 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   const Estimate share =
       estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off, errors), has_step);
   out.share = share.value;
-  out.share_u = open_of(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off, 1);
-  out.share_most = open_of(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
+  out.share_u = open_of(share, both(1 + std::abs(share.value), std::abs(out.base), false), round_off, false);
+  out.share_most = open_of(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, true);
   out.motion = share.unsettled();
   for (const Point* point : {&first, &second})
     if (out.motion.empty() && point->estimate) out.motion = point->estimate->unsettled();

@@ -22,7 +22,8 @@ struct Order {
   std::string level;
   std::vector<const Line*> lines;
   std::vector<std::string> names;
-  std::size_t without = 0;  ///< that ran and have no value: each may be larger than all others
+  std::size_t without = 0;                  ///< that ran and have no value: each may be larger than all others
+  std::vector<const Line*> untouched = {};  ///< of stops that nothing touches, which come last
   /// Groups of neighbours that are not told apart, as places in `lines`.
   std::vector<std::vector<std::size_t>> groups;
 };
@@ -60,6 +61,8 @@ class Ranking {
       order.level = level_of(line);
       if (line.known())
         order.lines.push_back(&line);
+      else if (line.point.of_untouched_stop)
+        order.untouched.push_back(&line);
       else if (std::any_of(line.point.cases.begin(), line.point.cases.end(),
                            [](const CaseRecord* one) { return one->status == Status::done; }))
         ++order.without;
@@ -88,8 +91,10 @@ class Ranking {
     Answered out = begin_answer(lines_);
     out.figure = figure();
     if (auto open = without_values(lines_, out, false)) return *open;
-    const bool alone = std::none_of(orders_.begin(), orders_.end(),
-                                    [](const auto& one) { return one.second.lines.size() + one.second.without > 1; });
+    const bool alone = std::none_of(orders_.begin(), orders_.end(), [](const auto& one) {
+      const Order& order = one.second;
+      return order.lines.size() + order.without + order.untouched.size() > 1;
+    });
     if (alone && lines_.all.size() > 1)
       return never_alone(std::move(out), lines_, over_ == over_stops ? "the stop" : evidence_.study().spoken(over_));
     for (const auto& [key, order] : orders_) add_rows(out, order);
@@ -111,6 +116,10 @@ class Ranking {
       out.reason = first.without > 0 ? without_value(first) : first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
     if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
+    if (std::vector<std::string> idle; !first.untouched.empty()) {
+      for (const Line* line : first.untouched) idle.push_back(name_of(*line));
+      rest.push_back({"; nothing touches " + some_of(idle), fmt::format("; {} never touched", idle.size())});
+    }
     if (orders_.size() > 1)
       rest.push_back(
           {!turned.empty()                  ? fmt::format("; {} is first with {}", turned_to, some_of(turned, 1))
@@ -234,6 +243,10 @@ class Ranking {
         out.rows.push_back(std::move(row));
       }
       place += group.size();
+    }
+    for (const Line* line : order.untouched) {
+      out.rows.push_back(lines_.row(*line));
+      out.rows.back().verdict = "last";
     }
   }
 

@@ -124,6 +124,7 @@ struct MeasureInfo {
   bool where_met = false;  ///< cases.csv has it only where a case has one
   /// Of a measure of a stop that is blank while nothing touches it: the one that stands wherever this one may.
   const char* stands_with = "contact_time";
+  bool mean = false;  ///< over a window: of draws of a load their mean is meant, and no single draw
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

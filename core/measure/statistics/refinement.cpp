@@ -292,18 +292,19 @@ LimitInterval interval(const Limit& limit) {
 bool OrderRun::clean() const {
   constexpr double narrow = 0.15, wide = 0.3;  // shares of the order
   if (verdict != Verdict::order || in_passing || beyond.size() > 1) return false;
-  std::size_t falling = 0, like = 0;
+  std::size_t falling = 0, rising = 0, like = 0;
   for (std::size_t k = 0; k < slopes.size(); ++k) {
     const bool inside = k >= first && k < first + length;
     falling += slopes[k] >= falls;
+    rising += slopes[k] <= -falls;
     like += inside || (slopes[k] >= falls && std::abs(slopes[k] - order) <= width);
   }
   if (length == 2 && order > steepest_of_two) return false;
-  if (length == 2) return like == falling && most - least <= narrow * order;
+  if (length == 2) return like == falling && rising == 0 && most - least <= narrow * order;
   const auto begin = slopes.begin() + static_cast<std::ptrdiff_t>(first),
              end = begin + static_cast<std::ptrdiff_t>(length);
   const bool flattens = std::is_sorted(begin, end, std::greater<>()) && most - least > wide * order;
-  return 2 * like >= falling && !flattens;
+  return 2 * like >= falling + rising && !flattens;
 }
 
 std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) {

@@ -130,7 +130,8 @@ const StopMeasure stop_measures[] = {
      "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
      "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true},
     {"stick_share", "1", "Share of the time in which the surface of the stop {} is pressed that it sticks.",
-     "stick share at {}", while_rubbed<[](Rubbed f, double) { return f.held / f.time; }>, Needs::friction, true},
+     "stick share at {}", while_rubbed<[](Rubbed f, double) { return f.held / f.time; }>, Needs::friction, true, false,
+     "stick_slip_changes"},
     {"friction_power", "W", "Power that friction at the stop {} turns to heat, mean over the window.",
      "friction power at {}",
      [](const StopReading& of) { return of.friction_works ? Known(of.friction->heat / of.rubbed_over) : std::nullopt; },
@@ -155,6 +156,15 @@ const StopMeasure stop_measures[] = {
                                                          : std::nullopt;
      },
      Needs::friction, true}};
+
+/// Whether a measure of a window is a mean; the others are extremes and sums.
+bool is_mean(const StopMeasure& one) {
+  constexpr const char* others[] = {"window_displacement_min", "window_displacement_max", "shock_force_max",
+                                    "slip_distance",           "stick_slip_changes",      "friction_impulse",
+                                    "tangent_force_peak"};
+  return one.needs != Needs::nothing && std::none_of(std::begin(others), std::end(others),
+                                                     [&](const char* name) { return one.name == std::string(name); });
+}
 
 /// The measure that every stop has which may have one with such needs, touched or not.
 const char* witness(Needs needs) {
@@ -270,6 +280,7 @@ const MeasureInfo* octave_measure_info(const std::string& name) {
   made->info = {made->name.c_str(), found->second.force ? "N" : "m", made->text.c_str()};
   made->info.reading.words = made->words.c_str();
   made->info.aside = true;
+  made->info.mean = true;
   return &(known[name] = std::move(made))->info;
 }
 
@@ -328,6 +339,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info.whole_steps = one->whole_steps;
   made->info.floor = one->floor;
   made->info.stands_with = witness(one->needs);
+  made->info.mean = is_mean(*one);
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }

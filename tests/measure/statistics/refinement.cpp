@@ -251,6 +251,15 @@ TEST_CASE("two slopes alone that are steeper than any scheme's are no clean orde
   CHECK(of(4, 5));
 }
 
+TEST_CASE("two slopes that agree among errors that rise as far are no clean order") {
+  // Newmark at a rigid stop: what the phase of a step makes of an impact.
+  const auto wild = order_run(
+      {{1, 0.09}, {0.5, 0.36}, {0.25, 0.19}, {0.125, 0.44}, {0.0625, 0.37}, {0.03125, 0.22}, {0.015625, 0.13}}, 0);
+  CHECK_FALSE(wild->clean());
+  // The same fall alone.
+  CHECK(order_run({{1, 0.37}, {0.5, 0.22}, {0.25, 0.13}}, 0)->clean());
+}
+
 TEST_CASE("two slopes that agree before the finest errors may be chance, and are said to be in passing") {
   // Slopes 2, 2, 0, 0: the level is met after two.
   const auto passing = order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}, {0.0625, 0.0625}}, 0);

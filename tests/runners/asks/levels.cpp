@@ -396,6 +396,18 @@ TEST_CASE("asks: a stop that is never touched has its line, and its reason") {
       std::find_if(answered.rows.begin(), answered.rows.end(), [](const VerdictRow& one) { return one.stop == "p2"; });
   REQUIRE(row != answered.rows.end());
   CHECK(row->reason.find("the stop is never touched") != std::string::npos);
+  // It keeps below any limit, and comes last.
+  const Answered below = answer_of(results, {{"limit", "mean_force"}, {"below", 2.0}}),
+                 beyond = answer_of(results, {{"limit", "mean_force"}, {"below", 0.5}}),
+                 above = answer_of(results, {{"limit", "mean_force"}, {"above", 0.5}}),
+                 ranked = answer_of(results, {{"rank", "mean_force"}, {"over", "stops"}});
+  CHECK(below.passes == Verdict::yes);
+  CHECK(beyond.passes == Verdict::no);
+  CHECK(above.passes == Verdict::open);
+  INFO(ranked.sentence);
+  CHECK(ranked.passes == Verdict::yes);
+  CHECK(ranked.sentence.find("nothing touches p2") != std::string::npos);
+  CHECK(ranked.rows.back().verdict == "last");
 }
 
 TEST_CASE("asks: a stop without a surface has no line of what runs along one, touched or not") {
@@ -563,6 +575,103 @@ TEST_CASE("asks: seeds that know their own intervals fall with the root of their
   REQUIRE(would != answered.rows.end());
   // 0.2/√n ≤ 0.03.
   CHECK(*would->value == std::ceil(std::pow(0.2 / 0.03, 2)));
+}
+
+TEST_CASE("asks: few seeds that contradict their own intervals are known by their scatter") {
+  const auto u_of = [](const std::vector<double>& values) {
+    Made made;
+    made.choices = {{seed_axis, {"1", "2", "3"}}};
+    made.truth = [&](const std::vector<std::size_t>& at) { return values[at[0]]; };
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.1);
+    const Answered answered = answer_of(results, {{"value", "impulse"}});
+    return *answered.rows.front().high - *answered.rows.front().value;
+  };
+  CHECK(u_of({1, 1.05, 0.95}) == Approx(0.1 / std::sqrt(3.0)));
+  // Student's t of three draws, 4.303 s/√3.
+  CHECK(u_of({1.3, 0.85, 0.63}) > 0.8);
+}
+
+TEST_CASE("asks: what a step may still leave is no more of what draws leave") {
+  // Draws that scatter by a tenth, a step that leaves a hundredth of that and is known by three sizes alone.
+  Made made;
+  made.choices = {{seed_axis, {}}, {"mass", {"m0", "m1"}}};
+  for (int seed = 1; seed <= 8; ++seed) made.choices[0].levels.push_back(std::to_string(seed));
+  made.steps = {4e-3, 2e-3, 1e-3};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[1] == 0 ? 1.0 : 1.6; };
+  made.scatter = 0.1;
+  made.error = 2e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.1);
+  const Answered ranked = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}}),
+                 limit = answer_of(results, {{"limit", "impulse"}, {"below", 2.0}}),
+                 enough = answer_of(results, {{"enough", "impulse"}, {"within", 0.2}});
+  INFO(ranked.sentence << "\n" << limit.sentence << "\n" << enough.sentence);
+  CHECK(ranked.passes == Verdict::yes);
+  CHECK(limit.passes == Verdict::yes);
+  CHECK(enough.passes == Verdict::yes);
+}
+
+TEST_CASE("asks: what is the same share of every draw is known, however the draws scatter") {
+  Made made;
+  made.choices = {{seed_axis, {"1", "2", "3", "4", "5", "6"}}, {"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[1] == 0 ? 1.0 : 5.0; };
+  made.scatter = 0.2;
+  made.error = 1e-6;
+  const StudyResults results = made.results();
+  const Answered answered = answer_of(results, {{"effect", "mass"}, {"on", "impulse"}, {"from", 3.95}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::yes);
+  const VerdictRow& row = answered.rows.front();
+  CHECK(*row.value == Approx(400));
+  CHECK(*row.high - *row.low < 1e-3);
+}
+
+TEST_CASE("asks: a mean over a window keeps to a limit by its interval, an extreme with each of its draws") {
+  for (const bool mean : {true, false}) {
+    Made made;
+    made.choices = {{seed_axis, {}}};
+    for (int seed = 1; seed <= 30; ++seed) made.choices[0].levels.push_back(std::to_string(seed));
+    made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+    made.scatter = 0.1;
+    made.measure = mean ? "window_displacement_rms[gap]" : "window_displacement_max[gap]";
+    const StudyResults results = made.results();
+    // Between the mean of the draws and the largest.
+    const Answered answered = answer_of(results, {{"limit", made.measure}, {"below", 1.12}});
+    INFO(answered.sentence);
+    CHECK(answered.passes == (mean ? Verdict::yes : Verdict::no));
+  }
+}
+
+TEST_CASE("asks: pairs of schemes agree in a restitution that all of them have") {
+  Made made;
+  made.choices = {{"time", {"s0", "s1"}}, {"time.restitution", {"0.2", "0.6"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1.2 + 0.4 * static_cast<double>(at[1]); };
+  made.error = 1e-5;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+  const Answered alike = answer_of(results, {{"effect", "time"}, {"on", "impulse"}, {"within", 0.01}});
+  INFO(alike.sentence);
+  CHECK(alike.passes == Verdict::yes);
+  CHECK(answer_of(results, {{"effect", "time.restitution"}, {"on", "impulse"}, {"from", 0.3}}).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: friction that sticks and slips errs as impacts do, and its share by a step for each change") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 0.7; };
+  made.measure = "stick_share[floor]";
+  made.error = 1e-9;
+  StudyResults results = made.results();
+  results.study["duration"] = 1.0;
+  const auto row_of = [&] { return answer_of(results, {{"value", "stick_share"}}).rows.front(); };
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("stick_slip_changes[floor]", 3.0);
+  const VerdictRow row = row_of();
+  // Three changes in a second, each known to the finest step.
+  CHECK(*row.high - *row.value >= 2.99 * made.steps.back());
+  Cases cases;
+  for (const CaseRecord& record : results.cases) cases.push_back(&record);
+  CHECK(answers::errors_of(cases) == Errors::saw_toothed);
 }
 
 TEST_CASE("asks: a window that holds a whole repetition of the load is not shortened") {
