@@ -195,8 +195,13 @@ Verdict finds_one_effort(const Friction& subject) {
   });
 }
 
-// A unit mass under `load` times its bound; its velocity and place after so many steps of 1 ms.
-std::pair<double, double> pulled(FrictionLaw& law, double load, int steps) {
+// A unit mass after so many steps.
+struct Pulled {
+  double velocity = 0, place = 0, slides = 0;  ///< what the law says of the last step
+};
+
+// Under `load` times its bound, steps of 1 ms.
+Pulled pulled(FrictionLaw& law, double load, int steps) {
   Rubbed one(1, 1, law.memory_per_row());
   one.A(0, 0) = one.h;
   double v = 0, x = 0;
@@ -207,28 +212,31 @@ std::pair<double, double> pulled(FrictionLaw& law, double load, int steps) {
     x += one.h * v;
     one.remembered = one.remembers;
   }
-  return {v, x};
+  return {v, x, one.slid[0]};
 }
 
 Verdict holds_and_slides(const Friction& subject) {
   const auto law = subject.make();
   law->prepare(1, 1);
   constexpr int steps = 20000;
-  const double held = pulled(*law, 0.97, steps).first, declared = law->creeps(0.97);
+  const double held = pulled(*law, 0.97, steps).velocity, declared = law->creeps(0.97);
   if (!(std::abs(held) <= declared * (1 + 1e-6) + 1e-9))
     return fails(
         fmt::format("a mass held by 0.97 of its bound drifts at {:.3g} m/s, and creeps() says {:.3g}", held, declared));
   // Of a bound of 1 N, which the swing that a sudden load begins does not reach.
   constexpr double load = 0.3;
-  const double way = pulled(*law, load, steps).second, declared_way = load * law->gives_way();
+  const double way = pulled(*law, load, steps).place, declared_way = load * law->gives_way();
   if (declared == 0 && !(std::abs(way - declared_way) <= 1e-3 * declared_way + 1e-12))
     return fails(
         fmt::format("a mass held by {} N gives way by {:.3g} m, and gives_way() says {:.3g}", load, way, declared_way));
-  const double early = pulled(*law, 1.1, steps / 2).first, late = pulled(*law, 1.1, steps).first;
-  const double acceleration = (late - early) / (0.5 * steps * 1e-3);
+  const Pulled early = pulled(*law, 1.1, steps / 2), late = pulled(*law, 1.1, steps);
+  const double acceleration = (late.velocity - early.velocity) / (0.5 * steps * 1e-3);
   if (!(std::abs(acceleration - 0.1) <= 1e-3))
     return fails(
         fmt::format("a mass pulled by 1.1 of its bound accelerates by {:.4g} of it; expected 0.1", acceleration));
+  if (!(std::abs(late.slides - late.velocity) <= 1e-2 * late.velocity))
+    return fails(
+        fmt::format("a mass that slides at {:.4g} m/s slides at {:.4g} by what it says", late.velocity, late.slides));
   return fine();
 }
 

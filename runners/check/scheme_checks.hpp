@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <ricochet/engine/marcher.hpp>
 #include <string>
 #include <vector>
@@ -9,6 +10,12 @@
 /// \file
 /// What is looked at in a time scheme. Each declared fact has a check that measures it, apart from the others.
 namespace ricochet::checking {
+
+/// Whether rigid laws have a measure in some stage.
+inline bool measures(const StepPlan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(),
+                     [](const Stage& stage) { return stage.impact.has_value(); });
+}
 
 // Form and answers (scheme_form.cpp).
 Verdict plan_is_well_formed(const Scheme& scheme);

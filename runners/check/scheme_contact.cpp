@@ -18,10 +18,6 @@ constexpr int phases = 5;
 StepPlan contact_plan(const Scheme& scheme, double h) {
   return plan_of(scheme, h, {1, 0, false, true});
 }
-bool measures(const StepPlan& plan) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(),
-                     [](const Stage& stage) { return stage.impact.has_value(); });
-}
 Verdict no_measure() {
   return not_declared("no impact measure: rigid laws are refused");
 }

@@ -157,9 +157,8 @@ Verdict singular_mass_as_declared(const Scheme& scheme) {
   const ProblemPointer bar = discretised(structure_scene({.stops = true}), 6, *massless_ends());
   const double h = sound_step(scheme, *bar, 1.0 / 200);
   StepPlan plan = plan_of(scheme, h, problem_facts(*bar, *rigid_stops()));
-  bool measures = false;
-  for (const Stage& stage : plan.stages) measures = measures || stage.impact.has_value();
-  Marcher marcher = marcher_of(bar, std::move(plan), h, measures ? rigid_stops() : no_contact());
+  const bool meets = measures(plan);
+  Marcher marcher = marcher_of(bar, std::move(plan), h, meets ? rigid_stops() : no_contact());
   marcher.start();
   marcher.march(200);
   if (!marcher.status(0).running)

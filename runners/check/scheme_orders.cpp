@@ -106,6 +106,25 @@ Verdict order_as_declared(const Scheme& scheme) {
                              declared, numbers(measured)));
   if (measured.order > declared + faster)
     return fails(fmt::format("declares order {:g}, {}: declare what it has", declared, numbers(measured)));
+  // A plan may be another one where nothing is damped, and where there is a stop; this one is never met.
+  const struct {
+    const char* where;
+    OscillatorBench bench;
+    ProblemFacts facts;
+  } others[] = {{"without damping", {.position = 0.3, .velocity = -1}, {1, 0, false, false}},
+                {"beside a stop that it never meets",
+                 {.damping = 0.4, .position = 0.3, .velocity = -1, .stop = true},
+                 {1, 0, true, true}}};
+  for (const auto& [where, other, facts] : others) {
+    if (other.stop && !measures(plan_of(scheme, 0.1, facts))) continue;
+    const double of_these = plan_of(scheme, 0.1, facts).facts.order;
+    const Errors found = march_against(scheme, other, closed_form(other), coarsest(scheme, 2),
+                                       other.stop ? rigid_stops : no_contact, -1e3);
+    const MeasuredOrder order = measured_order(found.steps, found.displacement, 0.6);
+    if (!order.exact && !(order.order >= of_these - slower))
+      return fails(fmt::format("declares order {:g} with this start rule, {}, on the oscillator {}", of_these,
+                               numbers(order), where));
+  }
   return fine(fmt::format("declared {:g}, {}", declared, numbers(measured)));
 }
 

@@ -80,6 +80,7 @@ TEST_CASE("friction laws with one thing wrong are caught") {
   caught(found, "does not stick by what it says", {}, [](FrictionProblem& problem) {
     for (int i = 0; i < problem.points; ++i) problem.sticks[i] = 0;
   });
+  caught("holds and slides", "by what it says", {}, [](FrictionProblem& problem) { problem.slid[0] = 0; });
   caught("holds and slides", "drifts", {}, [](FrictionProblem& problem) { problem.effort[0] *= 0.99; });
   // Exact friction that says it were a spring of 1e6 N/m.
   caught("holds and slides", "gives way by 0 m", {}, {}, 1e-6);

@@ -1,4 +1,6 @@
 // `ricochet check`: what it takes, and what it answers.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "tests/places.hpp"
@@ -52,6 +54,28 @@ TEST_CASE("check takes a plan by its file, by its name and by --plugin, and meas
     INFO(words << "\n" << outcome.out << outcome.err);
     CHECK(outcome.code == 3);
     CHECK_THAT(outcome.out, Contains("order and start     FAILS") && Contains("declares order 2"));
+  }
+}
+
+TEST_CASE("check measures the order without damping and beside a stop too", "[command]") {
+  const Folder here;
+  const auto replaced = [](std::string text, const std::string& what, const std::string& by) {
+    return text.replace(text.find(what), what.size(), by);
+  };
+  // The trapezoidal rule, but for a term of h² where nothing is damped, or where there is a stop.
+  const std::string sound = replaced(theta_plan("\"theta == 0.5 ? 2 : 1\""), R"("default": 0.75, "range": [0.6, 1])",
+                                     R"("default": 0.5, "range": [0.5, 1])");
+  for (const auto& [name, fact, where] :
+       {std::tuple("undamped", "damped ? 0 : 0.1", "on the oscillator without damping"),
+        {"touching", "contact ? 0.1 : 0", "beside a stop that it never meets"}}) {
+    std::string plan = replaced(sound, "theta*theta*h*h*K", fmt::format("theta*theta*h*h*K + ({})*h*h*K", fact));
+    if (std::string(name) == "touching")
+      plan = replaced(plan, "\"load\"", R"("impact": {"value": "next", "effort": ["h"]}, "load")");
+    here.write(std::string(name) + ".json", plan);
+    const Outcome outcome = here.run(fmt::format("check {}.json", name));
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.code == 3);
+    CHECK_THAT(outcome.out, Contains("order and start     FAILS") && Contains(where));
   }
 }
 
