@@ -113,7 +113,7 @@ bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const
   CompileOptions options;
   options.make_friction = candidate.make_friction;
   options.march = MarchWay::flights;
-  options.moving_support = true;
+  options.moving_support = candidate.problem->support.pulsation != 0;
   options.expected_steps = long_march;
   auto compiled =
       compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(), {candidate.lane}, options);
@@ -155,7 +155,7 @@ int LaneGroups::add(LaneCandidate candidate) {
     CompileOptions options;
     options.make_friction = candidate.make_friction;
     options.kind = first ? OperatorKind::automatic : groups_.front()->kind;
-    options.moving_support = true;
+    options.moving_support = candidate.problem->support.pulsation != 0;
     options.expected_steps = long_march;
     auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
                             std::vector<LaneSpec>(full_block, candidate.lane), options);

@@ -273,12 +273,15 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space, 
                                    "amplitude of 0, or a stop on the ground",
                                    stop.name));
     if (stop_row(scene, space, stop, i).free.empty())
-      throw InputError(stop_pointer(i, "/at"),
-                       stop.to == stop.at
-                           ? fmt::format("stop {} joins a place to itself; expected two places, or no `to`", stop.name)
-                       : stop.to
-                           ? fmt::format("stop {} joins two held dofs: nothing there can move", stop.name)
-                           : fmt::format("stop {} is where the structure is held: nothing there can move", stop.name));
+      throw InputError(
+          stop_pointer(i, "/at"),
+          stop.to == stop.at
+              ? fmt::format("stop {} joins a place to itself; expected two places, or no `to`", stop.name)
+          : stop.to ? fmt::format("stop {} joins two held dofs: nothing there can move", stop.name)
+          : !stop.at.dofs.empty()
+              ? fmt::format("stop {}: nothing there can move: its dofs are held, or their weights are 0 or cancel",
+                            stop.name)
+              : fmt::format("stop {} is where the structure is held: nothing there can move", stop.name));
   }
 }
 

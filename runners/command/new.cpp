@@ -14,6 +14,7 @@
 #include "runners/command/examples.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -128,7 +129,7 @@ std::vector<std::string> make(const Wish& wish, const Example& example) {
     }
     draft.give(wish.name);
   } catch (const fs::filesystem_error& error) {
-    throw UsageError("the folder \"" + wish.name + "\" cannot be made here: " + error.what());
+    throw StoreError("the folder \"" + wish.name + "\" cannot be made here: " + error.what());
   }
   return names;
 }

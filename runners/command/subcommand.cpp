@@ -49,12 +49,15 @@ std::string see_help(const Subcommand& command) {
 std::string instead_of(const std::string& name, const Subcommand& command, const po::options_description& own) {
   if (const std::string nearest = nearest_name(name, option_names(own)); !nearest.empty())
     return "; did you mean " + nearest + "?";
+  std::string near;
   for (const Subcommand& other : subcommands()) {
     if (other.name == command.name) continue;
-    if (const std::string nearest = nearest_name(name, option_names(described(other))); !nearest.empty())
-      return "; `ricochet " + other.name + "` has " + nearest;
+    const std::string nearest = nearest_name(name, option_names(described(other)));
+    if (nearest.empty() || (!near.empty() && nearest != name)) continue;
+    near = "; `ricochet " + other.name + "` has " + nearest;
+    if (nearest == name) break;
   }
-  return "";
+  return near;
 }
 
 po::variables_map parse(const Subcommand& command, const po::options_description& named,

@@ -62,6 +62,7 @@ void add_verdicts(const AnalysedResults& results, const std::vector<std::string>
     }
     if (!answered.words.empty()) continue;
     for (const VerdictRow& row : answered.rows) {
+      if (row.given) continue;  // the study's own number
       Row key{row.measure, row.stop, row.unit};
       add_levels(key, row.of_case, row.level);
       out.push_back({"verdicts", json_text(ask), std::move(key), row});

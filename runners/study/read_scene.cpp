@@ -133,8 +133,13 @@ BeamSpec read_beam(const Json& json) {
     read_material(one, beam.sections.emplace_back());
     beam.sections.back().to = one.at("to").get<double>();
   }
-  for (const Json& one : json.value("masses", Json::array()))
-    beam.masses.push_back({one.at("x").get<double>(), one.at("mass").get<double>(), one.at("inertia").get<double>()});
+  for (const Json& one : json.value("masses", Json::array())) {
+    const BeamMass mass{one.at("x").get<double>(), one.at("mass").get<double>(), one.at("inertia").get<double>()};
+    if (mass.mass == 0 && mass.inertia == 0)
+      throw InputError(fmt::format("/scene/structure/masses/{}", beam.masses.size()),
+                       "neither a mass nor an inertia; expected one of them");
+    beam.masses.push_back(mass);
+  }
   beam.planes = json.value("planes", 1);
   beam.added_mass = json.value("added_mass", 0.0);
   beam.tension = json.value("tension", 0.0);

@@ -172,7 +172,7 @@ class SchemaWriter {
                 {"minItems", field.count},
                 {"maxItems", field.count}};
       case Field::Form::numbers:
-        return field.count == 3 ? direction_schema() : one_or_list(scalar(field.spec));
+        return field.count == 3 ? direction_schema() : one_or_list(scalar(field.spec), !field.repeats);
       case Field::Form::words:
         return or_null(field, one_or_list(words(field)));
       case Field::Form::starts:
@@ -215,8 +215,11 @@ class SchemaWriter {
     return field.nullable ? either("null", true, std::move(schema)) : schema;
   }
 
-  static Json one_or_list(const Json& one) {
-    return either("array", {{"items", one}, {"minItems", 1}, {"uniqueItems", true}}, one);
+  /// `choices`: none stands twice; a list of numbers that is one value may repeat them.
+  static Json one_or_list(const Json& one, bool choices = true) {
+    Json list{{"items", one}, {"minItems", 1}};
+    if (choices) list["uniqueItems"] = true;
+    return either("array", list, one);
   }
 
   static Json bound(double value) {

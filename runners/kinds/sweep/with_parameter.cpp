@@ -61,6 +61,13 @@ std::vector<Scalar> scalars_of(const Json& scene) {
   return scalars;
 }
 
+// Whether a value multiplies what stands there: a formula of x or t, and no number in words.
+bool is_factor(const Json& old, const Field& field, const std::string& pointer) {
+  if (!old.is_string()) return false;
+  const Formula formula(old.get<std::string>(), pointer, field.variables);
+  return formula.uses_x() || formula.uses_t();
+}
+
 // The number or the formula that the value makes of what stands there.
 Json changed(const Json& old, const Field& field, const std::string& pointer, double value) {
   if (old.is_null()) throw InputError(pointer, "there is no stop here (null) that a parameter could move");
@@ -68,11 +75,8 @@ Json changed(const Json& old, const Field& field, const std::string& pointer, do
     throw InputError(
         pointer, fmt::format("the value {} is impossible; expected a number in {}{}", value, field.spec.range.text(),
                              field.spec.unit.empty() || field.spec.unit == "1" ? "" : ", in " + field.spec.unit));
-  if (!old.is_string()) return value;
-  const auto text = old.get<std::string>();
-  const Formula formula(text, pointer, field.variables);
-  if (!formula.uses_x() && !formula.uses_t()) return value;
-  return fmt::format("({})*({})", value, text);
+  if (!is_factor(old, field, pointer)) return value;
+  return fmt::format("({})*({})", value, old.get<std::string>());
 }
 
 void change_scene(StudyCase& one, const std::string& pointer, double value) {
@@ -231,7 +235,9 @@ std::optional<SweptAxis> swept_axis(const StudyResults& results, const nlohmann:
   SweptAxis out{axis_column(results, column_name(pointer))};
   try {
     const nlohmann::ordered_json::json_pointer place(pointer);
-    out.factor = pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string();
+    if (pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string())
+      for (const Scalar& one : scalars_of(results.study.at("scene")))
+        if (one.pointer == pointer) out.factor = is_factor(results.study.at(place), *one.field, pointer);
   } catch (const nlohmann::ordered_json::exception&) {
     return std::nullopt;
   }

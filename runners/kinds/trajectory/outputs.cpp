@@ -99,7 +99,11 @@ void check_outputs(const Json& study) {
     throw InputError("/window/parts", fmt::format("{} parts of {} stops; expected at most {} together",
                                                   window.at("parts").get<std::size_t>(), stops, most));
   if (!outputs.is_object()) return;
-  if (outputs.contains("spectra") && !outputs.at("spectra").empty()) check_spectra(study, outputs);
+  if (outputs.contains("spectra") && !outputs.at("spectra").empty()) return check_spectra(study, outputs);
+  for (const char* key : {"rate", "segment"})
+    if (outputs.contains(key) && !outputs.at(key).is_null())
+      throw InputError(fmt::format("/outputs/{}", key),
+                       "is of spectra, and none is asked for; give outputs.spectra too");
 }
 
 AskedOutputs asked_outputs(const StudyCase& study_case) {

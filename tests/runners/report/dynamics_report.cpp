@@ -76,7 +76,7 @@ TEST_CASE("an orbit's group follows its class and period", "[report]") {
 
 TEST_CASE("a swept value has the unit that the study keeps, and a formula is multiplied by it", "[report]") {
   StudyResults results;
-  results.study = {{"scene", {{"stops", {{"upper", "0.1"}, {"lower", -0.1}}}, {"support", {{"amplitude", 0.1}}}}}};
+  results.study = {{"scene", {{"stops", {{"upper", "0.1 + 0.1*x"}, {"lower", "-0.1"}}}, {"support", {{"amplitude", 0.1}}}}}};
   results.axes = {{"support.amplitude", "m", ""}, {"stops.lower", "m", ""}, {"contact.stiffness", "N/m", ""}};
   const auto shown = [&](const char* pointer) {
     return with_unit(swept_quantity(results, {{"pointer", pointer}}, "parameter"));

@@ -50,6 +50,11 @@ TEST_CASE("a study gives a beam its supports, masses, tension, what is absent is
   CHECK(parse(written).cases.front().id == parse(small_study()).cases.front().id);
 }
 
+TEST_CASE("a point mass without mass and inertia is none") {
+  CHECK_THAT(refusal(changed("/scene/structure/masses", Json::parse(R"([{"x": 1, "mass": 0.1}, {"x": 1.5}])"))),
+             Contains("/scene/structure/masses/1: neither a mass nor an inertia"));
+}
+
 TEST_CASE("sections stand in the place of one section") {
   Json study = held_study();
   Json& structure = study["scene"]["structure"];

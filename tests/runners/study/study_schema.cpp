@@ -87,6 +87,7 @@ TEST_CASE("The schema and the reader agree on what is a study") {
                                 {"force", Json::parse("[[[0, 0], [1, 1]], [[0, 0], [1, 2]]]")},
                                 {"back", Json::parse("[null, [[0, 0], [1, 1]]]")}}),
       with("/methods/mass", "poor"),
+      with("/scene/structure/damping", {{"ratios", {0.02, 0.02}}}),
       with("/exclude", Json::array({{{"mass", "poor"}, {"why", "slow"}}})),
       with("/exclude", Json::array({{{"mass.velocity", "P1"}, {"why", "slow"}}})),
   };

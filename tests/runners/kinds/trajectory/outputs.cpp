@@ -312,6 +312,7 @@ TEST_CASE("outputs that cannot be are refused by pointer, with the nearest name"
   CHECK(with(R"({"shocks": {}})") == "no error");
   CHECK_THAT(with(R"({"shock": {}})"), Contains("/outputs/shock: unknown key") && Contains("shocks"));
   CHECK_THAT(with(R"({"shocks": {"force_above": -1}})"), Contains("/outputs/shocks/force_above"));
+  CHECK_THAT(with(R"({"rate": 1000})"), Contains("/outputs/rate: is of spectra, and none is asked for"));
   CHECK_THAT(with(R"({"rate": 100, "segment": 0.1, "spectra": [{"of": "plat", "quantity": "force"}]})"),
              Contains("/outputs/spectra/0/of: no stop \"plat\"") && Contains("did you mean \"plate\"?"));
   CHECK_THAT(with(R"({"segment": 0.1, "spectra": [{"of": "end", "quantity": "force"}]})"),
