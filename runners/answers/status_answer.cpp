@@ -77,13 +77,16 @@ Sentence told_of(const Choices& study, const Listed& methods, const SetNames& na
   for (const std::size_t k : members)
     for (const CaseRecord* one : methods.cases[k]) whole = whole && chosen.contains(one);
   const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
-  constexpr std::size_t longest = 120;
-  const std::string own = without_count(who).empty() ? who : without_count(who),
-                    shown = own.size() <= longest ? own : names.shared(members);
-  const std::string must = fmt::format("Doubtful: {} of {} case{}{}", some.size(), total, total == 1 ? "" : "s",
-                                       some.size() == total ? "" : " (" + shown + ")");
-  return {with_reason(must, doubt.text, doubt.differs ? ", in the first of them" : ""),
-          {status_clause("doubtful", who, some.size(), total)}};
+  const std::string own = without_count(who).empty() ? who : without_count(who);
+  // The fullest name that thirty words hold.
+  std::string text;
+  for (const std::string& shown : {own, names.shared(members), std::string()}) {
+    const std::string must = fmt::format("Doubtful: {} of {} case{}{}", some.size(), total, total == 1 ? "" : "s",
+                                         some.size() == total || shown.empty() ? "" : " (" + shown + ")");
+    text = with_reason(must, doubt.text, doubt.differs ? ", in the first of them" : "");
+    if (fits(text)) break;
+  }
+  return {text, {status_clause("doubtful", who, some.size(), total)}};
 }
 
 }  // namespace

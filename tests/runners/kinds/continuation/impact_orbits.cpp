@@ -140,6 +140,16 @@ Json study_of(const Impacting& one, const std::string& time, double from, double
   return study;
 }
 
+/// Along the pulsation of a force of 1 N, from what rest leads to, with the branches at its points.
+Json from_rest(const Impacting& one, const std::string& time, double from, double to, int steps) {
+  Json study = study_of(one, time, from, to, one.pulsation, steps);
+  study["scene"].erase("initial");
+  study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
+  study["orbits"] = {{{"at", one.pulsation}, {"from", "rest"}}};
+  study.erase("switch");
+  return study;
+}
+
 }  // namespace
 
 TEST_CASE("the closed form of an impact orbit is that of the worked example of COCO") {
@@ -277,18 +287,14 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
 
 TEST_CASE(
     "a marked orbit has its own multipliers, and a doubled branch ends where its orbits repeat after one period") {
-  // m = 0.2 kg, k = 80 N/m, c = 0.4 N s/m over ω₀ = 20 rad/s and m: pulsations over 20, times times 20.
   Impacting one;
   one.damping = 0.1;
   one.restitution = 0.75;
   one.stop = 0;
   one.pulsation = 2.4;
-  Json study = study_of(one, "moreau-jean", 2.3, 2.85, 2.4, 1000);
-  study["scene"].erase("initial");
-  study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
-  study["orbits"] = {{{"at", 2.4}, {"from", "rest"}, {"periods", 200}}};
+  Json study = from_rest(one, "moreau-jean", 2.3, 2.85, 1000);
+  study["orbits"][0]["periods"] = 200;
   study["mark"] = {{"parameter", {2.5, 2.65}}};
-  study.erase("switch");
   const CaseRecord record = continued(study);
   INFO(record.reason());
   REQUIRE(record.status == Status::done);
@@ -362,13 +368,8 @@ TEST_CASE("a branch with rebounds keeps to its scene, and its doubled orbits are
   one.restitution = 0.75;
   one.stop = 0.2;
   one.pulsation = 2.2;
-  Json study = study_of(one, "newmark-dumont-paoli", 2.0, 2.3, 2.2, 2000);
-  study["scene"]["structure"]["force"]["amplitude"] = 1;
+  Json study = from_rest(one, "newmark-dumont-paoli", 2.0, 2.3, 2000);
   study["scene"]["stops"]["lower"] = -2.5;
-  study["scene"].erase("initial");
-  study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
-  study["orbits"] = {{{"at", 2.2}, {"from", "rest"}}};
-  study.erase("switch");
   const CaseRecord record = continued(study);
   INFO(record.reason());
   REQUIRE(record.status == Status::done);
