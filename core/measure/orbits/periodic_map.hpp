@@ -33,7 +33,7 @@ struct MapClock {
   int steps_per_period = 0;
   int period = 1;     ///< p
   bool half = false;  ///< over p/2 periods, with the sign changed; p odd
-  int begins = 0;     ///< steps after t = 0 of the forcing at which x stands (SteppedMap), fewer than steps()
+  int begins = 0;     ///< steps after t = 0 of the forcing at which x stands (SteppedMap), within the period
   long long steps() const { return static_cast<long long>(period) * steps_per_period / (half ? 2 : 1); }
   double sign() const { return half ? -1.0 : 1.0; }
   bool operator==(const MapClock&) const = default;

@@ -179,17 +179,22 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     if (first == 0) observers.add(&watch);
     if (jump && jump->needed()) observers.add(&*jump);
     StrobeTip tip;
-    if (clock.begins == 0) {
+    // A half map may begin in either half.
+    const long long into = clock.begins % clock.steps();
+    const double turned = clock.begins < clock.steps() ? 1 : clock.sign();
+    if (into == 0) {
       tip = march_over(marcher, clock, observers);
+      tip.displacement *= turned;
+      tip.velocity *= turned;
     } else {
-      marcher.march(clock.steps() - clock.begins - 1, observers);
+      marcher.march(clock.steps() - into - 1, observers);
       const double before = marcher.tip(0);
       marcher.march(1, observers);
-      tip.displacement = clock.sign() * marcher.tip(0);
-      if (first == 0) out.strobe = clock.sign() * read(marcher.lane_state(0), group);
+      tip.displacement = turned * clock.sign() * marcher.tip(0);
+      if (first == 0) out.strobe = turned * clock.sign() * read(marcher.lane_state(0), group);
       marcher.march(1, observers);
-      tip.velocity = clock.sign() * (marcher.tip(0) - before) / (2 * marcher.program().h);
-      marcher.march(clock.begins - 1, observers);
+      tip.velocity = turned * clock.sign() * (marcher.tip(0) - before) / (2 * marcher.program().h);
+      marcher.march(into - 1, observers);
     }
     out.tip = tip.displacement;
     out.tip_velocity = tip.velocity;
@@ -197,7 +202,7 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     if (out.end) return out;
     if (first == 0) {
       out.image = clock.sign() * read(marcher.lane_state(0), group);
-      if (clock.begins == 0) out.strobe = x;
+      if (into == 0) out.strobe = turned * x;
       watch.sum(marcher.program().h, clock.half, out);
       out.quiet = clock.begins;
       if (rebounds_)

@@ -70,6 +70,18 @@ TEST_CASE("an orbit is the same wherever its state stands in the period") {
   }
 }
 
+TEST_CASE("half a period from the second half leads to what the whole one leads to") {
+  const int steps = 200, begins = 150;
+  PeriodicMap pieces = tube_map(steps, 4);
+  SteppedMap map = amplitude_map(steps, 4);
+  const Eigen::VectorXd x = settled_tube(pieces, 0.09, steps, 20, 4);
+  const MapClock whole{steps, 1, false};
+  MapClock half{steps, 1, true};
+  half.begins = begins;
+  const Eigen::VectorXd later = map.moved(map.march(x, 0.09, whole).image, 0.09, whole, begins - steps / 2);
+  CHECK(map.metric().size(map.march(map.moved(x, 0.09, whole, begins), 0.09, half).image + later) < 1e-13);
+}
+
 TEST_CASE("steps of arclength follow the branch that pieces follow") {
   const int steps = 200;
   PeriodicMap pieces = tube_map(steps, 4);
