@@ -87,7 +87,12 @@ Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::
   double u = std::max(safety * last, t.rest(order, safety));
   if (t.before * t.last < 0 || order > steepest_order || errors == Errors::saw_toothed)
     u = std::max(u, t.first_order_rest(safety));
-  if (errors == Errors::saw_toothed) u = std::max(u, out.range);
+  if (errors == Errors::saw_toothed) {
+    u = std::max(u, out.range);
+    // Three teeth may fall together by chance: what coarser sizes were off by falls with the size at least.
+    for (const SizedValue& one : values)
+      u = std::max(u, safety * std::abs(one.value - out.value) * values.back().size / one.size);
+  }
   if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
     if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {

@@ -28,6 +28,8 @@ struct MethodRun {
   std::optional<double> motion;         ///< what a motion at rest would err by
   std::vector<SizedValue> errors = {};  ///< the coarsest first
   double floor = 0;
+  /// OrderRun::clean(); and where impacts fall somewhere in their steps, two slopes that the next contradicts are none.
+  bool clean() const;
 };
 
 /// Of every method with two sizes or more, among these cases. `refined`: "step" or "elements".

@@ -38,7 +38,7 @@ struct Method {
 Found found_in(const MethodRun& one) {
   switch (one.run.verdict) {
     case Run::order:
-      return one.run.clean() ? Found::clean : Found::unclear;
+      return one.clean() ? Found::clean : Found::unclear;
     case Run::stops:
     case Run::does_not_fall:
     case Run::no_steady_order:
@@ -169,7 +169,7 @@ class OrderAsk {
     std::vector<std::string> parts;
     switch (run.verdict) {
       case Run::order:
-        if (!run.clean())
+        if (!one.clean())
           parts.push_back(run.length == 2 && run.order > OrderRun::steepest_of_two
                               ? "two slopes alone, steeper than a scheme's"
                               : fmt::format("{} of {} slopes agree", run.length, run.slopes.size()));

@@ -1,6 +1,7 @@
 
 #include <algorithm>
 
+#include "runners/answers/limits.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -8,6 +9,11 @@
 namespace ricochet {
 
 using namespace answers;
+
+bool MethodRun::clean() const {
+  const bool contradicted = run.length == 2 && run.stops_at;
+  return run.clean() && !(contradicted && errors_of(cases) == Errors::saw_toothed);
+}
 
 std::vector<MethodRun> runs_of(const Choices& study, const std::string& error, const std::string& refined) {
   return runs_of(study, all_cases(study.results()), error, refined);

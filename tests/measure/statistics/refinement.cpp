@@ -251,6 +251,16 @@ TEST_CASE("two slopes alone that are steeper than any scheme's are no clean orde
   CHECK(of(4, 5));
 }
 
+TEST_CASE("values that fall together by chance are known to what coarser steps are off by, as it falls with the step") {
+  // A ball that bounces with e = 0.7: its impulse at four steps, and in truth 2.406985 N s or so far from three that
+  // agree.
+  const std::vector<SizedValue> values = {{4e-4, 2.4103}, {2e-4, 2.40731}, {1e-4, 2.40728}, {5e-5, 2.4073}};
+  const auto limit = limit_of(values, 0, {}, Errors::saw_toothed);
+  REQUIRE(limit);
+  CHECK(*limit->uncertainty >= (2.4103 - 2.4073) / 8);
+  CHECK(limit->low <= 2.406985);
+}
+
 TEST_CASE("two slopes that agree among errors that rise as far are no clean order") {
   // Newmark at a rigid stop: what the phase of a step makes of an impact.
   const auto wild = order_run(
