@@ -1,5 +1,7 @@
 #include "runners/study/read_scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <ricochet/scene/bodies.hpp>

@@ -7,6 +7,7 @@
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/report/quantity.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
