@@ -287,11 +287,7 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
 
 TEST_CASE(
     "a marked orbit has its own multipliers, and a doubled branch ends where its orbits repeat after one period") {
-  Impacting one;
-  one.damping = 0.1;
-  one.restitution = 0.75;
-  one.stop = 0;
-  one.pulsation = 2.4;
+  Impacting one{.damping = 0.1, .pulsation = 2.4, .stop = 0, .restitution = 0.75};
   Json study = from_rest(one, "moreau-jean", 2.3, 2.85, 1000);
   study["orbits"][0]["periods"] = 200;
   study["mark"] = {{"parameter", {2.5, 2.65}}};
