@@ -95,6 +95,13 @@ StepWork work_of(const LaneCandidate& candidate) {
   return {static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()), false};
 }
 
+CompileOptions options_of(const LaneCandidate& candidate) {
+  CompileOptions options;
+  options.make_friction = candidate.make_friction;
+  options.moving_support = candidate.problem->support.pulsation != 0;
+  return options;
+}
+
 }  // namespace
 
 struct LaneGroups::Group {
@@ -110,10 +117,8 @@ LaneGroups::~LaneGroups() = default;
 
 // A program of one lane that leaves out steps, where one is wanted and expected to cost less than a lane among eight.
 bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const {
-  CompileOptions options;
-  options.make_friction = candidate.make_friction;
+  CompileOptions options = options_of(candidate);
   options.march = MarchWay::flights;
-  options.moving_support = candidate.problem->support.pulsation != 0;
   options.expected_steps = long_march;
   auto compiled =
       compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(), {candidate.lane}, options);
@@ -152,10 +157,8 @@ int LaneGroups::add(LaneCandidate candidate) {
   const bool first = groups_.empty();
   const bool flights = way_ != MarchWay::every_step && (first || flies());
   if (!flights || !try_flights(candidate, *group)) {
-    CompileOptions options;
-    options.make_friction = candidate.make_friction;
+    CompileOptions options = options_of(candidate);
     options.kind = first ? OperatorKind::automatic : groups_.front()->kind;
-    options.moving_support = candidate.problem->support.pulsation != 0;
     options.expected_steps = long_march;
     auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
                             std::vector<LaneSpec>(full_block, candidate.lane), options);
@@ -195,10 +198,8 @@ double LaneGroups::predicted_step_seconds(int group, int lanes) const {
 
 Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents) const {
   const Group& one = *groups_[static_cast<std::size_t>(group)];
-  CompileOptions options;
-  options.make_friction = one.scene.make_friction;
+  CompileOptions options = options_of(one.scene);
   options.kind = one.kind;
-  options.moving_support = one.scene.problem->support.pulsation != 0;
   options.tangents = tangents;
   if (one.flies && lanes.size() == 1) {
     options.march = MarchWay::flights;

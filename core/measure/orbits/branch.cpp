@@ -58,6 +58,27 @@ int repeats_sooner(const SetSequence& sequence, int period) {
   return 0;
 }
 
+void BranchTrace::end_at_repeat(int sooner, double parameter) {
+  end_by(TraceEnd::joined,
+         fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner, sooner == 1 ? "" : "s", parameter));
+}
+
+void BranchTrace::end_at_image(double parameter) {
+  end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", parameter));
+}
+
+void BranchTrace::end_at_arc(double longest) {
+  end_by(TraceEnd::limit, fmt::format("an arc of {:.4g} m, the longest of at_most", longest));
+}
+
+bool BranchTrace::grazes() const {
+  constexpr double share = 0.01;
+  if (rebounds == 0) return false;
+  double fastest = 0;
+  for (const BranchCorner& corner : corners) fastest = std::max(fastest, corner.slowest);
+  return corners.back().slowest < share * fastest;
+}
+
 BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits)
     : map_(&map), clock_(clock), follower_(std::move(follower)), limits_(std::move(limits)) {
   first_ = follower_.state().sets;
@@ -93,8 +114,7 @@ void BranchRun::read() {
                       : roots_at(multipliers_of(*map_, clock_,
                                                 half_step_derivative(*map_, follower_.derivative(), state.sets, clock_,
                                                                      state.parameter, follower_.measures())));
-  raw.resize(std::min(raw.size(), static_cast<std::size_t>(limits_.multipliers)));
-  corner.leading = std::move(raw);
+  corner.leading = limits_.leading(std::move(raw));
   trace_.corners.push_back(std::move(corner));
 }
 
@@ -180,17 +200,16 @@ bool BranchRun::advance(long long pieces) {
     const bool closed = follower_.state().sets == first_;
     keep(changes(was, now) || closed);
     if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
-      trace_.end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", now.parameter));
+      trace_.end_at_image(now.parameter);
     else if (const int sooner = limits_.ends_sooner ? repeats_sooner(follower_.state().sets, clock_.period) : 0)
-      trace_.end_by(TraceEnd::joined, fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner,
-                                                  sooner == 1 ? "" : "s", now.parameter));
+      trace_.end_at_repeat(sooner, now.parameter);
     else if (closed)
       trace_.end_by(TraceEnd::closed, "closed: the branch came back to its first piece");
     else if (follower_.state().pieces >= limits_.pieces)
       trace_.end_by(TraceEnd::limit,
                     fmt::format("{} piece{}, the most of at_most", limits_.pieces, limits_.pieces == 1 ? "" : "s"));
     else if (follower_.state().arc >= limits_.arc)
-      trace_.end_by(TraceEnd::limit, fmt::format("an arc of {:.4g} m, the longest of at_most", limits_.arc));
+      trace_.end_at_arc(limits_.arc);
     if (trace_.ended()) trace_.states.emplace(static_cast<long long>(size) - 1, follower_.state().x);
   }
   return !trace_.ended();

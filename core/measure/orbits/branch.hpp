@@ -185,9 +185,6 @@ constexpr std::array<const char*, 8> words_of(TraceEnd) {
   return {"", "range", "closed", "joined", "asked", "limit", "left", "missing"};
 }
 
-/// Impacts of such a share of the speed that they had are grazes.
-inline constexpr double graze_share = 0.01;
-
 /// A branch as far as it was followed.
 struct BranchTrace {
   std::vector<BranchCorner> corners;
@@ -203,6 +200,11 @@ struct BranchTrace {
     ends = how;
     end = std::move(why);
   }
+  void end_at_repeat(int sooner, double parameter);
+  void end_at_image(double parameter);
+  void end_at_arc(double longest);
+  /// Whether an impact of the last orbit has 1 % of the fastest approach of the branch, or less.
+  bool grazes() const;
 };
 
 /// Where a branch ends at the latest, and what is looked for on it.
@@ -215,6 +217,12 @@ struct BranchLimits {
   bool ends_at_image = false;      ///< of orbits that are not their own images: whether it ends where they become so
   bool ends_sooner = false;        ///< of orbits of several periods: whether it ends where they repeat sooner
   std::size_t most_states = 2000;  ///< evenly spaced ones
+
+  /// The multipliers that are kept of an orbit.
+  std::vector<std::complex<double>> leading(std::vector<std::complex<double>> all) const {
+    all.resize(std::min(all.size(), static_cast<std::size_t>(multipliers)));
+    return all;
+  }
 };
 
 /// Follows one branch of a piecewise affine map, with what is read at each corner.

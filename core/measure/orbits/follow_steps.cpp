@@ -26,12 +26,10 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
     : map_(&map), clock_(clock), limits_(limits) {
   now_ = {std::move(x), parameter};
   step_ = limits.first > 0 ? limits.first : first_step * range();
-  Step first{now_, map.march(now_.x, parameter, clock, true)};
-  if (!first.image.end && first.image.quiet != clock.begins) {
-    now_.x = first.to.x = map.moved(now_.x, parameter, clock, first.image.quiet);
-    clock_.begins = first.image.quiet;
-    first.image = map.march(now_.x, parameter, clock_, true);
-  }
+  QuietOrbit at{now_.x, clock};
+  Step first{now_, march_quiet(map, at, parameter)};
+  now_.x = first.to.x = at.x;
+  clock_ = at.clock;
   if (first.image.end) {
     trace_.end_by(TraceEnd::left, "the first orbit cannot be marched: " + text(first.image.end));
     return;
@@ -216,8 +214,7 @@ void StepFollower::keep(Step step) {
   corner.held = step.image.held;
   corner.shortest = step.image.shortest;
   corner.raw = corner.smooth = roots_at(step.multipliers);
-  step.multipliers.resize(std::min(step.multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
-  corner.leading = std::move(step.multipliers);
+  corner.leading = limits_.branch.leading(std::move(step.multipliers));
   corner.residual = map_->metric().size(step.image.image - step.to.x);
   corner.rebounds = step.image.rebounds;
   corner.placed = step.image.placed;
@@ -241,8 +238,8 @@ void StepFollower::mark_up_to(const Point& next) {
     FollowedMap::Image made = map_->march(at.x, mark, clock_, true);
     std::vector<std::complex<double>> multipliers = multipliers_of(made.derivative);
     const Outside beyond = outside(multipliers);
-    multipliers.resize(std::min(multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
-    trace_.marks.push_back({mark, arc, made.tip, pieces() - 1, std::move(made.strobe), std::move(multipliers), beyond});
+    trace_.marks.push_back({mark, arc, made.tip, pieces() - 1, std::move(made.strobe),
+                            limits_.branch.leading(std::move(multipliers)), beyond});
   }
 }
 
@@ -313,12 +310,9 @@ StepFollower::Verdict StepFollower::judge(Step& step) {
 }
 
 std::string StepFollower::why_left(const Step& tried) const {
-  const double slowest = trace_.corners.back().slowest;
-  double fastest = 0;
-  for (const BranchCorner& corner : trace_.corners) fastest = std::max(fastest, corner.slowest);
-  if (trace_.rebounds > 0 && slowest < graze_share * fastest)
+  if (trace_.grazes())
     return fmt::format("an impact becomes a graze, where the derivative is infinite; ended at λ = {:.10g}, {:.3g} m/s",
-                       now_.parameter, slowest);
+                       now_.parameter, trace_.corners.back().slowest);
   return fmt::format("the branch was left at λ = {:.10g}: {}step below {:.3g} m; {}", now_.parameter,
                      tried.jumps ? "no orbit was found beyond a contact that comes or goes; " : "",
                      smallest_step * range(), failure_);
@@ -389,12 +383,11 @@ void StepFollower::take(Step step) {
   const auto [secant, far] = secant_to(step.to);
   const VectorXd apart = apart_.size() > 0 ? std::exchange(apart_, asymmetry(step.to)) : VectorXd();
   if (apart_.dot(apart) < 0)
-    trace_.end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", step.to.parameter));
+    trace_.end_at_image(step.to.parameter);
   else
     mark_up_to(step.to);
   if (const int sooner = limits_.branch.ends_sooner ? repeats_after(step) : 0; sooner > 0)
-    trace_.end_by(TraceEnd::joined, fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner,
-                                                sooner == 1 ? "" : "s", step.to.parameter));
+    trace_.end_at_repeat(sooner, step.to.parameter);
   if (!trace_.ended() && comes_back(secant, far))
     trace_.end_by(TraceEnd::closed, "closed: the branch came back to its first orbit");
   if (trace_.ended()) return;
@@ -416,7 +409,7 @@ void StepFollower::take(Step step) {
   if (pieces() > limits_.branch.pieces)
     trace_.end_by(TraceEnd::limit, fmt::format("{} steps, the most of at_most", limits_.branch.pieces));
   else if (trace_.corners.back().arc >= limits_.branch.arc)
-    trace_.end_by(TraceEnd::limit, fmt::format("an arc of {:.4g} m, the longest of at_most", limits_.branch.arc));
+    trace_.end_at_arc(limits_.branch.arc);
 }
 
 bool StepFollower::advance(long long steps) {

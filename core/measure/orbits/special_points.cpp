@@ -347,14 +347,6 @@ void add_contacts(const Corners& corners, const PointSearch& search, std::vector
   }
 }
 
-// Whether a branch could not be followed since an impact becomes a graze.
-bool ends_at_graze(const BranchTrace& trace) {
-  if (trace.ends != TraceEnd::left || trace.rebounds == 0) return false;
-  double fastest = 0;
-  for (const BranchCorner& corner : trace.corners) fastest = std::max(fastest, corner.slowest);
-  return trace.corners.back().slowest < graze_share * fastest;
-}
-
 // A branch that comes by a place again has what is there once.
 void tell_once(std::vector<SpecialPoint>& points, double same_tip) {
   std::vector<SpecialPoint> once;
@@ -382,7 +374,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   else
     add_contacts(corners, search, points);
   // Next to a graze, where the derivative is infinite, multipliers change their sign.
-  if (ends_at_graze(trace))
+  if (trace.ends == TraceEnd::left && trace.grazes())
     std::erase_if(points, [&](const SpecialPoint& one) {
       const bool crossing =
           one.kind == PointKind::flip || one.kind == PointKind::symmetry || one.kind == PointKind::torus;

@@ -238,27 +238,29 @@ QuietOrbit quiet_orbit(FollowedMap& map, const VectorXd& x, double parameter, co
   return out;
 }
 
+FollowedMap::Image march_quiet(FollowedMap& map, QuietOrbit& at, double parameter) {
+  FollowedMap::Image made = map.march(at.x, parameter, at.clock, true);
+  if (made.end || made.quiet == at.clock.begins) return made;
+  at.x = map.moved(at.x, parameter, at.clock, made.quiet);
+  at.clock.begins = made.quiet;
+  return map.march(at.x, parameter, at.clock, true);
+}
+
 ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& told, double tolerance, int most) {
-  MapClock clock = told;
   ShotOrbit orbit;
   orbit.parameter = parameter;
   orbit.nearest = std::numeric_limits<double>::infinity();
   const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
-  QuietOrbit best{x, clock};
+  QuietOrbit at{std::move(x), told}, best = at;
   for (;; ++orbit.iterations) {
-    FollowedMap::Image made = map.march(x, parameter, clock, true);
-    if (!made.end && made.quiet != clock.begins) {
-      x = map.moved(x, parameter, clock, made.quiet);
-      clock.begins = made.quiet;
-      made = map.march(x, parameter, clock, true);
-    }
+    const FollowedMap::Image made = march_quiet(map, at, parameter);
     orbit.end = made.end;
     if (made.end) break;
-    const VectorXd left = made.image - x;
+    const VectorXd left = made.image - at.x;
     const double last = std::exchange(orbit.residual, map.metric().size(left));
     if (orbit.residual < orbit.nearest) {
       orbit.nearest = orbit.residual;
-      best = {x, clock};
+      best = at;
     }
     // Where an iteration gains nothing any more the rest is round-off.
     const bool settled = orbit.iterations > 1 && orbit.residual < stalled * tolerance && orbit.residual > 0.1 * last;
@@ -268,9 +270,9 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
     if (orbit.found && orbit.iterations > 2 && orbit.residual > 0.5 * orbit.nearest) break;
     const VectorXd correction = DenseLu(one - made.derivative).solve(left);
     if (!correction.allFinite()) break;
-    x += correction;
+    at.x += correction;
   }
-  if (!orbit.found) best = {std::move(x), clock};
+  if (!orbit.found) best = std::move(at);
   orbit.x = map.moved(best.x, parameter, best.clock, told.begins);
   orbit.residual = orbit.nearest;
   return orbit;

@@ -43,6 +43,8 @@ struct QuietOrbit {
   MapClock clock;
 };
 QuietOrbit quiet_orbit(FollowedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
+/// Marches with the derivative from there; where an impact is near, `at` is moved from it first.
+FollowedMap::Image march_quiet(FollowedMap& map, QuietOrbit& at, double parameter);
 /// On pieces x may stand anywhere.
 inline QuietOrbit quiet_orbit(PeriodicMap&, const Eigen::VectorXd& x, double, const MapClock& clock) {
   return {x, clock};
