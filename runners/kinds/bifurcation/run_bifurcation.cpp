@@ -183,7 +183,7 @@ class BifurcationRun {
   struct Ending {
     std::size_t start;
     double value;
-    int near, task;
+    int task;
   };
 
   std::vector<std::optional<MotionClass>> classes_of(std::size_t start) const {
@@ -204,7 +204,7 @@ class BifurcationRun {
         if (scheduler_->task(far.tasks[s]).after == near.tasks[s]) continue;
         OrbitTask task = task_at(far, starts_[s]);
         task.after = near.tasks[s];
-        all.push_back({s, far.value, near.tasks[s], scheduler_->add(std::move(task))});
+        all.push_back({s, far.value, scheduler_->add(std::move(task))});
       }
     }
     return all;

@@ -12,7 +12,6 @@ namespace ricochet {
 /// order_runs: one row per method, error and refined quantity.
 Table order_runs_table(const Choices& study);
 
-/// One method's errors along a refinement, at the finest of the other.
 /// The order in the step that an error may show.
 struct ShownOrder {
   std::optional<double> order;  ///< what the scheme declares, or less where velocities are read by less
@@ -20,6 +19,7 @@ struct ShownOrder {
 };
 ShownOrder shown_order(const CaseRecord& record, const std::string& error);
 
+/// One method's errors along a refinement, at the finest of the other.
 struct MethodRun {
   Cases cases;
   const CaseRecord* finest = nullptr;

@@ -33,7 +33,13 @@ struct StopMeasure {
   bool size_of_force = false;
   const char* whole_steps = "";  ///< as of MeasureInfo
   const char* floor = "";        ///< likewise
+  bool mean = true;              ///< of a window; the others are extremes and sums
 };
+
+constexpr StopMeasure no_mean(StopMeasure one) {
+  one.mean = false;
+  return one;
+}
 
 template <double (*of)(const RunningMoments&)>
 Known displaced(const StopReading& reading) {
@@ -91,10 +97,12 @@ const StopMeasure stop_measures[] = {
      "deviation of the displacement at {}", displaced<[](Moments m) { return m.deviation(); }>, Needs::window, true},
     {"window_displacement_rms", "m", "Root mean square over the window of the displacement that the stop {} bounds.",
      "rms displacement at {}", displaced<[](Moments m) { return m.rms(); }>, Needs::window, true},
-    {"window_displacement_min", "m", "Least displacement over the window that the stop {} bounds, with its sign.",
-     "lower end of the displacement at {}", displaced<[](Moments m) { return m.least; }>, Needs::window, true},
-    {"window_displacement_max", "m", "Largest displacement over the window that the stop {} bounds, with its sign.",
-     "upper end of the displacement at {}", displaced<[](Moments m) { return m.largest; }>, Needs::window, true},
+    no_mean({"window_displacement_min", "m",
+             "Least displacement over the window that the stop {} bounds, with its sign.",
+             "lower end of the displacement at {}", displaced<[](Moments m) { return m.least; }>, Needs::window, true}),
+    no_mean(
+        {"window_displacement_max", "m", "Largest displacement over the window that the stop {} bounds, with its sign.",
+         "upper end of the displacement at {}", displaced<[](Moments m) { return m.largest; }>, Needs::window, true}),
     {"window_force", "N", "Mean over the window of the force at the stop {}: times the window it is the impulse.",
      "mean force at {} over the window", pushed<[](Push p, double time) { return p.mean(time); }>, Needs::window, true},
     {"window_rms_force", "N", "Root mean square over the window of the force at the stop {}.",
@@ -124,8 +132,8 @@ const StopMeasure stop_measures[] = {
      shocked<[](Shocks s) { return s.peaks.mean; }>, Needs::shocks, true, true},
     {"shock_force_deviation", "N", "Standard deviation of the peak forces of the shocks at the stop {}.",
      "deviation of the peaks at {}", shocked<[](Shocks s) { return s.peaks.deviation(); }>, Needs::shocks, true, true},
-    {"shock_force_max", "N", "Largest peak force of the shocks at the stop {}.", "largest peak at {}",
-     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true, "", contact_steps_measure},
+    no_mean({"shock_force_max", "N", "Largest peak force of the shocks at the stop {}.", "largest peak at {}",
+             shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true, "", contact_steps_measure}),
     {"wear_power", "W",
      "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
      "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true},
@@ -136,35 +144,28 @@ const StopMeasure stop_measures[] = {
      "friction power at {}",
      [](const StopReading& of) { return of.friction_works ? Known(of.friction->heat / of.rubbed_over) : std::nullopt; },
      Needs::friction, true},
-    {"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",
-     "slip at {}", rubbed<[](Rubbed f, double) { return f.slipped; }>, Needs::friction, true},
-    {"stick_slip_changes", "1",
-     "How often the surface of the stop {} begins or ends to stick while it is pressed. A stick has two steps at "
-     "least.",
-     "changes between stick and slip at {}", rubbed<[](Rubbed f, double) { return f.changes; }>, Needs::friction, true},
-    {"friction_impulse", "N s", "Momentum that friction at the stop {} gives, by magnitude, in the window.",
-     "friction impulse at {}", rubbed<[](Rubbed f, double) { return f.impulse; }>, Needs::friction, true},
+    no_mean({"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",
+             "slip at {}", rubbed<[](Rubbed f, double) { return f.slipped; }>, Needs::friction, true}),
+    no_mean(
+        {"stick_slip_changes", "1",
+         "How often the surface of the stop {} begins or ends to stick while it is pressed. A stick has two steps at "
+         "least.",
+         "changes between stick and slip at {}", rubbed<[](Rubbed f, double) { return f.changes; }>, Needs::friction,
+         true}),
+    no_mean({"friction_impulse", "N s", "Momentum that friction at the stop {} gives, by magnitude, in the window.",
+             "friction impulse at {}", rubbed<[](Rubbed f, double) { return f.impulse; }>, Needs::friction, true}),
     {"tangent_force_rms", "N",
      "Root mean square of the force of friction at the stop {} while it is pressed; blank as peak_force.",
      "rms friction at {}", while_rubbed<[](Rubbed f, double) { return std::sqrt(f.squares / f.time); }>,
      Needs::friction, true, true},
-    {"tangent_force_peak", "N", "Largest force of friction at the stop {}; blank as peak_force.", "peak friction at {}",
-     rubbed<[](Rubbed f, double) { return f.peak; }>, Needs::friction, true, true},
+    no_mean({"tangent_force_peak", "N", "Largest force of friction at the stop {}; blank as peak_force.",
+             "peak friction at {}", rubbed<[](Rubbed f, double) { return f.peak; }>, Needs::friction, true, true}),
     {"drift_of_sticking", "m/s", "How fast the surface of the stop {} creeps while it sticks.", "creep at {}",
      [](const StopReading& of) -> Known {
        return of.friction_works && of.friction->held > 0 ? Known(of.friction->drifted / of.friction->held)
                                                          : std::nullopt;
      },
      Needs::friction, true}};
-
-/// Whether a measure of a window is a mean; the others are extremes and sums.
-bool is_mean(const StopMeasure& one) {
-  constexpr const char* others[] = {"window_displacement_min", "window_displacement_max", "shock_force_max",
-                                    "slip_distance",           "stick_slip_changes",      "friction_impulse",
-                                    "tangent_force_peak"};
-  return one.needs != Needs::nothing && std::none_of(std::begin(others), std::end(others),
-                                                     [&](const char* name) { return one.name == std::string(name); });
-}
 
 /// The measure that every stop has which may have one with such needs, touched or not.
 const char* witness(Needs needs) {
@@ -339,7 +340,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info.whole_steps = one->whole_steps;
   made->info.floor = one->floor;
   made->info.stands_with = witness(one->needs);
-  made->info.mean = is_mean(*one);
+  made->info.mean = one->needs != Needs::nothing && one->mean;
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }
