@@ -16,4 +16,7 @@ Fingerprint fingerprint(const Eigen::SparseMatrix<double>& matrix);
 /// Of its size and places alone.
 Fingerprint pattern_fingerprint(const Eigen::SparseMatrix<double>& matrix);
 
+/// Whether two compressed matrices hold entries in the same places.
+bool same_places(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b);
+
 }  // namespace ricochet

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <ricochet/contract/fingerprint.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 
@@ -135,6 +136,11 @@ SparseFill sparse_fill(const Eigen::SparseMatrix<double>& A) {
 
 QuasiDefinite weighted_system(double k, const SparseMatrix& stiffness, double m, const Inertia& inertia) {
   QuasiDefinite matrix;
+  if (inertia.assembled() && same_places(stiffness, inertia.mass)) {
+    matrix.A = stiffness;
+    matrix.A.coeffs() = k * stiffness.coeffs() + m * inertia.mass.coeffs();
+    return matrix;
+  }
   matrix.A = k * stiffness;
   if (inertia.assembled()) {
     matrix.A += m * inertia.mass;
