@@ -121,7 +121,9 @@ std::optional<Refusal> read_friction(StageProgram& program, const StageEffort& n
   return std::nullopt;
 }
 
-std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Program& whole) {
+// `near`: a stage that is made, whose operator may serve this one as well.
+std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Program& whole,
+                            const StageProgram* near = nullptr) {
   const std::size_t slots = whole.plan.slots.size();
   program.folded = fold(stage, whole.problem->damping, static_cast<int>(slots));
   if (whole.contact)
@@ -145,6 +147,9 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   }
   program.driven = program.folded.driven() || !stage.load.empty();
   if (!program.folded.solves() || (!program.driven && !program.reads_contact)) return std::nullopt;
+  if (near && near->op && whole.kind == OperatorKind::sparse)
+    program.op = make_near_operator(*whole.model, program.folded, whole.width, near->folded, *near->op);
+  if (program.op) return std::nullopt;
   auto made = definite_operator(whole, program.folded, whole.width, "S", stage.matrix);
   if (auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
   program.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
@@ -335,13 +340,13 @@ WayOrRefusal choose_way(Program& program, const CompileOptions& options) {
 std::optional<Refusal> fill_stages(Program& program, const DerivedPlan& derived) {
   program.start.resize(program.plan.start.size());
   program.stages.resize(program.plan.stages.size());
-  for (std::size_t k = 0; k < program.start.size(); ++k) {
-    program.start[k].facts = derived.start[k];
-    if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return refusal;
-  }
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     program.stages[k].facts = derived.stages[k];
     if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return refusal;
+  }
+  for (std::size_t k = 0; k < program.start.size(); ++k) {
+    program.start[k].facts = derived.start[k];
+    if (auto refusal = fill(program.start[k], program.plan.start[k], program, &program.stages.front())) return refusal;
   }
   connect_works(program);
   if (auto refusal = add_contact_facts(program)) return refusal;

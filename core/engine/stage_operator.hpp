@@ -74,6 +74,12 @@ using OperatorOrRefusal = std::variant<std::unique_ptr<StageOperator>, Refusal>;
 /// Makes the operator of a stage in the coordinates of `model`, for T lanes.
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes);
 
+/// The operator of a stage that is solved once, without a factor of its own. Made where S = a S₀ + b M with a > 0,
+/// b ≥ 0 and S₀ = s₀_M M + s₀_K K of another stage, whose positive operator it keeps. Null where the stages are not so,
+/// or where the condition 1 + b / (a s₀_M) of S₀⁻¹S is above 3.
+std::unique_ptr<StageOperator> make_near_operator(const MarchModel& model, const FoldedStage& stage, int lanes,
+                                                  const FoldedStage& other, StageOperator& of_other);
+
 /// The operator of a stage where `model` has modal coordinates. Refuses a mode on which S vanishes.
 OperatorOrRefusal make_modal_operator(const MarchModel& model, const FoldedStage& stage, int lanes);
 

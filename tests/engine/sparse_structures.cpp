@@ -110,7 +110,10 @@ TEST_CASE("lanes of a sparse operator are bitwise those that march alone") {
   const SceneSpec scene = net(12, 11);
   const auto lanes = [](const LaneSpec& lane) {
     std::vector<LaneSpec> all(5, lane);
-    for (std::size_t k = 0; k < all.size(); ++k) all[k].upper *= 1 + 0.1 * static_cast<double>(k);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k].upper *= 1 + 0.1 * static_cast<double>(k);
+      all[k].position.setLinSpaced(0, 1e-4 * static_cast<double>(k));
+    }
     return all;
   };
   CompileOptions options;
@@ -124,4 +127,48 @@ TEST_CASE("lanes of a sparse operator are bitwise those that march alone") {
     run(alone, 0.2);
     CHECK(alone.position(0) == block.position(k));
   }
+}
+
+TEST_CASE("a start rule near to the step is solved through the factor of the step, one that is far has its own") {
+  const auto problem = problem_of(net(12, 11), 1, methods.mass);
+  const MarchModel model(problem, false);
+  const auto weighs = [](double mass, double stiffness) {
+    FoldedStage stage;
+    stage.mass = mass;
+    stage.stiffness = stiffness;
+    stage.stiffness_history = {1};
+    stage.mass_history = stage.damping_history = {0};
+    return stage;
+  };
+  const auto factored = [&](const FoldedStage& stage) {
+    return std::move(std::get<std::unique_ptr<StageOperator>>(make_operator(OperatorKind::sparse, model, stage, 1)));
+  };
+  const FoldedStage step = weighs(1e6, 0.6);
+  const auto of_step = factored(step);
+  Eigen::VectorXd slot = Eigen::VectorXd::LinSpaced(model.rows(), -1, 2);
+  slot[7] = 30;
+  FreeStepInput input;
+  const double* slots[] = {slot.data()};
+  input.slots = slots;
+  input.k = slot.data();
+  for (const auto& [mass, stiffness] : {std::pair(2e6, 1.2), {2e6, 1.0}, {2e6, 0.4}}) {
+    INFO(mass << " M + " << stiffness << " K");
+    const FoldedStage start = weighs(mass, stiffness);
+    const auto near = make_near_operator(model, start, 1, step, *of_step);
+    REQUIRE(near);
+    const auto own = factored(start);
+    near->free_step(input);
+    own->free_step(input);
+    const Eigen::Map<const Eigen::VectorXd> found(near->unknown(), model.rows()),
+        expected(own->unknown(), model.rows());
+    // Of matrices whose condition is below 3.
+    CHECK((found - expected).norm() <= 1e-14 * expected.norm());
+    Eigen::VectorXd column(model.rows()), of_own(model.rows());
+    near->solve_column(slot.data(), column.data());
+    own->solve_column(slot.data(), of_own.data());
+    CHECK(column == of_own);
+  }
+  // Without stiffness, with less mass than a multiple of the step has, or too far from it.
+  for (const auto& [mass, stiffness] : {std::pair(1e6, 0.0), {1e6, 1.2}, {2e6, 0.3}})
+    CHECK_FALSE(make_near_operator(model, weighs(mass, stiffness), 1, step, *of_step));
 }
