@@ -191,7 +191,7 @@ FairResult ours(const Scene& scene, Registry& registry, long long steps, Operato
       time->make(defaults(time->manual, {{"beta", 0.5}, {"restitution", 0.0}}))->plan(h, problem_facts(*problem, *law));
   CompileOptions options;
   options.march = MarchWay::every_step;
-  options.expected_steps = 100 * steps;
+  options.expected_steps = steps;
   Program program = std::get<Program>(
       compile(problem, std::get<StepPlan>(plan), h, std::move(law), {scene_lane(*problem, {})}, options));
   kind = program.kind;
