@@ -11,6 +11,7 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/run/study_cases.hpp"
+#include "runners/run/waiting_line.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
@@ -171,7 +172,9 @@ struct StudyPlan {
 
 StudyPlan plan_study(const Study& study, CasePlanner& planner) {
   StudyPlan all;
+  WaitingLine waiting("planning cases");
   for (const StudyCase& study_case : study.cases) {
+    waiting.done(all.why_not.size(), study.cases.size());
     std::string& why = all.why_not[study_case.id];
     if (study_case.excluded) {
       ++all.costs.excluded;
@@ -212,8 +215,11 @@ void print_doubts(const Study& study, std::ostream& out) {
 void keep_part(Study& study, const StudyPart& part, CasePlanner& planner) {
   check_part(study, part);
   std::map<std::string, double> seconds;
-  for (const StudyCase& one : study.cases)
+  WaitingLine waiting("planning all cases, to deal them into parts");
+  for (const StudyCase& one : study.cases) {
+    waiting.done(seconds.size(), study.cases.size());
     if (!one.excluded) seconds[one.id] = planner.plan(one).plan.predicted_seconds;
+  }
   std::vector<StudyCase> own;
   for (const StudyCase* one : cases_of_part(study, part, seconds)) own.push_back(*one);
   study.cases = std::move(own);

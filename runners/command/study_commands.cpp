@@ -21,6 +21,7 @@
 #include "runners/run/finish_run.hpp"
 #include "runners/run/pair_results.hpp"
 #include "runners/run/run_study.hpp"
+#include "runners/run/waiting_line.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
@@ -38,7 +39,10 @@ int with_study(const Arguments& arguments, const std::function<int(const OpenStu
   OpenStudy open{{}, standard_catalogue(arguments.plugins), {}};
   std::optional<StudyText> given;
   try {
-    open.study = load_study(given.emplace(name), open.catalogue, open.registry);
+    {
+      const WaitingLine waiting("reading " + name.string());
+      open.study = load_study(given.emplace(name), open.catalogue, open.registry);
+    }
     return use(open);
   } catch (const MissingMethod& error) {
     if (error.near()) throw StudyError(explain(error, *given));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
@@ -17,6 +18,7 @@
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/exit_code.hpp"
 #include "runners/run/study_runner.hpp"
+#include "runners/run/waiting_line.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/checksums.hpp"
 #include "runners/store/read_store.hpp"
@@ -103,7 +105,9 @@ Table reasons_table(const StudyResults& results) {
 }
 
 std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::filesystem::path& folder,
-                                                    const RenderReport& render, const std::set<std::string>* changed) {
+                                                    const RenderReport& render, const std::set<std::string>* changed,
+                                                    std::FILE* messages) {
+  const WaitingLine waiting("making tables and report", messages);
   auto results = std::make_unique<const AnalysedResults>(store.load());
   store.make_views(*results);
   write_outputs(
@@ -177,8 +181,10 @@ void tell_damage(const std::filesystem::path& folder, const StudyResults& result
 
 int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder, bool json) {
   return unless_unusable([&] {
+    std::optional<WaitingLine> waiting(std::in_place, "making tables and report");
     const AnalysedResults results(read_what_is_whole(folder));
     write_outputs(folder, results, [&] { return render(results); });
+    waiting.reset();
     say(stdout, json ? asked_json(results).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
                      : fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
@@ -188,8 +194,10 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
 
 int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file) {
   return unless_unusable([&] {
+    std::optional<WaitingLine> waiting(std::in_place, "making tables");
     const StudyResults results = with_tables(read_what_is_whole(folder));
     write_tables(to, results, one_file);
+    waiting.reset();
     say(stdout, fmt::format("tables: {}\n", to.string()));
     if (!one_file && !has_curve_files(results))
       say(stdout,

@@ -30,10 +30,11 @@ inline void say_as_it_is(std::FILE* out, std::string_view text) {
 // How a folder whose cases are all in its store becomes one of results.
 
 /// Makes the views of the store and writes the tables, curves and report of what it holds, which is returned.
-/// `changed`: see write_outputs().
+/// `changed`: see write_outputs(). `messages`: who waits for it.
 std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::filesystem::path& folder,
                                                     const RenderReport& render,
-                                                    const std::set<std::string>* changed = nullptr);
+                                                    const std::set<std::string>* changed = nullptr,
+                                                    std::FILE* messages = stderr);
 
 /// Says the answer, the totals (`how` they came about) and where the report is; returns the exit code.
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,

@@ -13,6 +13,7 @@
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/outputs.hpp"
 #include "runners/run/study_runner.hpp"
+#include "runners/run/waiting_line.hpp"
 #include "runners/workers/allowed_processors.hpp"
 #include "runners/workers/isolated_cases.hpp"
 
@@ -32,6 +33,7 @@ bool is_short(const Study& study, const StudyRunner& here) {
   double seconds = of_each_case * static_cast<double>(study.cases.size());
   if (seconds >= short_run) return false;
   std::atomic<bool> long_enough{false};
+  const WaitingLine waiting("planning cases");
   const double begun = thread_seconds();
   double planned = 0;  // one case of those that cost the same
   StudyRunner planner;

@@ -15,6 +15,7 @@
 #include "runners/report/html.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/run/study_cases.hpp"
+#include "runners/run/waiting_line.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
@@ -53,12 +54,12 @@ class FolderRun {
   int run() {
     if (const auto held = store_.part(); held && *held != part_)
       throw PartRefused(other_part_text(folder_, study_.name, *held, part_));
-    for (const ExpectedCase& one : expected_cases(runner_.libraries, study_)) fingerprints_[one.id] = one.fingerprint;
+    {
+      const WaitingLine waiting("reading what the cases depend on", runner_.messages);
+      for (const ExpectedCase& one : expected_cases(runner_.libraries, study_)) fingerprints_[one.id] = one.fingerprint;
+    }
     if (!deal()) return interrupted();
-    StudyResults header = results_header(study_);
-    header.expected_cases = static_cast<int>(cases_.size());
-    header.part = part_;
-    kept_ = store_.begin(header, expected(), runner_.arithmetic);
+    begin();
     say(runner_.messages, versions_text(store_));
     take_over();
     announce();
@@ -85,6 +86,15 @@ class FolderRun {
     for (const PendingCase& one : all) predicted_[one.study_case->id] = one.predicted_seconds;
     cases_ = cases_of_part(study_, part_, predicted_);
     return !stop_;
+  }
+
+  /// What the store holds of these cases is kept.
+  void begin() {
+    const WaitingLine waiting("looking what " + folder_.string() + " holds", runner_.messages);
+    StudyResults header = results_header(study_);
+    header.expected_cases = static_cast<int>(cases_.size());
+    header.part = part_;
+    kept_ = store_.begin(header, expected(), runner_.arithmetic);
   }
 
   std::vector<ExpectedCase> expected() const {
@@ -239,7 +249,7 @@ class FolderRun {
   }
 
   int finish() {
-    const auto results = write_folder(store_, folder_, runner_.render, &fresh_);
+    const auto results = write_folder(store_, folder_, runner_.render, &fresh_, runner_.messages);
     const double seconds = seconds_since(begin_);
     // As `plan` counts them: what is refused does not run. Nor does what is kept, though its times are taken.
     const auto ran = std::count_if(results->cases.begin(), results->cases.end(), [this](const CaseRecord& one) {
