@@ -147,18 +147,14 @@ std::string Choices::table_words(const std::string& column, const std::string& v
 }
 
 std::string Choices::level(const CaseRecord& record, const std::string& choice) const {
-  if (axis_role(choice) == choice && !is_method_role(choice))
-    return text(record, choice).empty() ? "" : value_words(choice, text(record, choice));
+  const std::string& role = role_of(choice);
+  if (role == choice && !is_method_role(choice)) return said(record, choice);
   std::string out;
-  const std::string& name = text(record, axis_role(choice));
+  const std::string& name = text(record, role);
   for (const std::string& column : columns_of(choice)) {
-    const std::string& value = text(record, column);
-    if (value.empty()) continue;
-    if (column != axis_role(column)) {
-      const auto found = differs_in_.find(column);
-      if (column != choice && (found == differs_in_.end() || found->second.count(name) == 0)) continue;
-    }
-    out += (out.empty() ? "" : " ") + value_words(column, value);
+    const std::string& value = said(record, column);
+    if (value.empty() || (column != role && column != choice && !differs(column, name))) continue;
+    out += (out.empty() ? "" : " ") + value;
   }
   return out;
 }
@@ -173,15 +169,14 @@ std::string Choices::label(const CaseRecord& record, const std::vector<std::stri
 std::string Choices::words(const CaseRecord& record, const std::vector<std::string>& columns) const {
   std::string out, last;
   for (const std::string& column : columns) {
-    const std::string& value = text(record, column);
+    const std::string& value = said(record, column);
     if (value.empty()) continue;
-    const std::string role = axis_role(column);
+    const std::string& role = role_of(column);
     // A parameter that cases of one method share says nothing beside the method's name.
-    const auto found = differs_in_.find(column);
     if (role != column && std::find(columns.begin(), columns.end(), role) != columns.end() &&
-        (found == differs_in_.end() || !found->second.contains(text(record, role))))
+        !differs(column, text(record, role)))
       continue;
-    out += (out.empty() ? "" : role == last ? " " : ", ") + value_words(column, value);
+    out += (out.empty() ? "" : role == last ? " " : ", ") + value;
     last = role;
   }
   return out;

@@ -46,6 +46,7 @@ Choices::Choices(const StudyResults& results) : results_(results) {
   for (const std::string& column : results.columns) {
     Values& own = values_[column];
     own.unit = report::shown_unit(axis_column(results, column).unit);
+    own.role = axis_role(column);
     std::map<std::string, std::size_t> places;
     std::set<double> numbers;
     std::set<std::size_t> methods;  // without references
@@ -69,9 +70,9 @@ Choices::Choices(const StudyResults& results) : results_(results) {
     // A refinement that is asked for is a choice.
     if (is_refinement(column) && column != asked_) continue;
     columns_.push_back(column);
-    if (const std::string choice = axis_role(column);
-        std::find(choices_.begin(), choices_.end(), choice) == choices_.end())
-      choices_.push_back(choice);
+    if (!is_among(choices_, own.role)) choices_.push_back(own.role);
+    columns_of_[own.role].push_back(column);
+    if (own.role != column) columns_of_[column] = {column};
   }
   // A parameter tells levels apart only where cases of one method differ in it.
   for (const std::string& column : columns_) {
@@ -80,13 +81,15 @@ Choices::Choices(const StudyResults& results) : results_(results) {
     std::map<std::string, std::string> first;
     for (const CaseRecord& record : results.cases) {
       const auto [at, fresh] = first.emplace(text(record, role), text(record, column));
-      if (!fresh && at->second != text(record, column)) differs_in_[column][at->first] = true;
+      if (!fresh && at->second != text(record, column)) differs_in_[column].insert(at->first);
     }
   }
   for (const CaseRecord& record : results.cases) {
     if (is_reference(record)) continue;
     if (const std::string mass = mass_label(record); !is_among(masses_, mass)) masses_.push_back(mass);
   }
+  for (auto& [column, own] : values_)
+    for (const std::string& value : own.texts) own.words.push_back(value_words(column, value));
 }
 
 const Choices::Values* Choices::known(const std::string& column) const {
@@ -127,11 +130,10 @@ std::vector<std::string> Choices::constants() const {
   return out;
 }
 
-std::vector<std::string> Choices::columns_of(const std::string& choice) const {
-  std::vector<std::string> own;
-  for (const std::string& column : columns_)
-    if (axis_role(column) == choice || column == choice) own.push_back(column);
-  return own;
+const std::vector<std::string>& Choices::columns_of(const std::string& choice) const {
+  static const std::vector<std::string> none;
+  const auto found = columns_of_.find(choice);
+  return found == columns_of_.end() ? none : found->second;
 }
 
 std::vector<std::string> Choices::scene_columns() const {
@@ -145,6 +147,22 @@ const std::string& Choices::text(const CaseRecord& record, const std::string& co
   static const std::string none;
   const auto at = place(record, column);
   return at ? values_.at(column).texts[*at] : none;
+}
+
+const std::string& Choices::said(const CaseRecord& record, const std::string& column) const {
+  static const std::string none;
+  const auto at = place(record, column);
+  return at ? values_.at(column).words[*at] : none;
+}
+
+const std::string& Choices::role_of(const std::string& column) const {
+  const Values* own = known(column);
+  return own ? own->role : column;
+}
+
+bool Choices::differs(const std::string& column, const std::string& method) const {
+  const auto found = differs_in_.find(column);
+  return found != differs_in_.end() && found->second.contains(method);
 }
 
 std::string Choices::key(const CaseRecord& record) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +49,7 @@ class Choices {
   /// Columns of choices that vary, in the study's order, and the choices that they belong to.
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::string>& choices() const { return choices_; }
-  std::vector<std::string> columns_of(const std::string& choice) const;
+  const std::vector<std::string>& columns_of(const std::string& choice) const;
   /// Choices that are no methods.
   std::vector<std::string> scene_columns() const;
 
@@ -130,11 +131,18 @@ class Choices {
   /// What cases have in a column.
   struct Values {
     std::vector<std::string> texts;  // each once
+    std::vector<std::string> words;  // of each, value_words()
+    std::string role;                // the column itself where it is of none
     std::vector<std::size_t> at;     // of each case, its place among the texts
     std::vector<double> numbers;     // ascending, each once
     std::string unit;
   };
   const Values* known(const std::string& column) const;
+  /// The words of the case's value in a column; "" where it has none.
+  const std::string& said(const CaseRecord& record, const std::string& column) const;
+  const std::string& role_of(const std::string& column) const;
+  /// Whether cases of this method differ in a column.
+  bool differs(const std::string& column, const std::string& method) const;
   std::string owner(const std::string& column) const;
   std::string own_words(const std::string& column, const std::string& value) const;
   std::string unit_after(const std::string& column) const;
@@ -144,8 +152,9 @@ class Choices {
   std::string asked_;
   std::map<std::string, Values> values_;
   std::vector<std::string> varying_, columns_, choices_, masses_;
-  std::string steps_;                                              // the column of steps
-  std::map<std::string, std::map<std::string, bool>> differs_in_;  // role → name\ncolumn: some cases of it differ there
+  std::map<std::string, std::vector<std::string>> columns_of_;  // of choices, and of their columns
+  std::string steps_;                                           // the column of steps
+  std::map<std::string, std::set<std::string>> differs_in_;     // column → methods whose cases differ there
 };
 
 /// The columns that are not among `own`.

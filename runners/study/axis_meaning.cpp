@@ -130,7 +130,7 @@ std::vector<std::string> column_parts(const std::string& column) {
 }
 
 std::string axis_role(const std::string& column) {
-  const std::string first = column_parts(column).front();
+  const std::string first = column.substr(0, column.find('.'));
   return is_method_role(first) ? first : column;
 }
 
