@@ -19,9 +19,10 @@ PlanOrRefusal noh_bathe(const Parameters& parameters, double h, const ProblemFac
   if (facts.mass_kernel_dimension > 0) return needs_mass("an acceleration");
   const double p = parameters.real("split"), c = p * h, d = (1 - p) * h;
   const double q1 = (1 - 2 * p) / (2 * p * (1 - p)), q2 = 0.5 - p * q1, q0 = 0.5 - q1 - q2;
-  const auto [q, v, a, b] = slots<4>();
+  const auto state = slots<4>();
+  const Combination &q = state[0], &v = state[1], &a = state[2], &b = state[3];
   // To the instant `now`, `step` later; an effort moves the position of the instant `next`, `ahead` later still.
-  const auto substep = [q = q, v = v, a = a](double step, double ahead, double now, double next, const auto& rate) {
+  const auto substep = [&](double step, double ahead, double now, double next, const auto& rate) {
     const Combination position = q + step * v + step * step / 2 * a;
     Stage stage = motion_at(now, position, v + step * a);
     stage.impact = {.value = position + ahead * rate + ahead * ahead / 2 * z, .bound = at(next)};

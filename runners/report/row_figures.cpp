@@ -190,16 +190,16 @@ class Pairs : public RowFigure {
     }
     std::vector<Row> all;
     for (auto& [pair, marks] : std::move(pairs).list())
-      all.push_back({pair, false, static_cast<double>(marks.size()), [this, names, marks = std::move(marks)](double y) {
+      all.push_back({pair, false, static_cast<double>(marks.size()), [this, names, own = std::move(marks)](double y) {
                        std::string way;
                        double at = y;
-                       for (const auto& [level, mark] : marks) {
+                       for (const auto& [level, mark] : own) {
                          if (mark.value)
                            way += fmt::format("{}{:.2f} {:.2f}", way.empty() ? "M" : "L", axis_->at(*mark.value), at);
                          at += lane;
                        }
                        if (!way.empty()) draw_.path(way, "joins");
-                       for (const auto& [level, mark] : marks) {
+                       for (const auto& [level, mark] : own) {
                          draw(mark, names[level], y, level);
                          y += lane;
                        }
@@ -232,15 +232,15 @@ class Parts : public RowFigure {
       double sum = 0;
       for (const auto& [part, value] : parts) sum += value;
       values.push_back(sum);
-      all.push_back({name, false, 1.3, [this, names, parts = std::move(parts)](double y) {
+      all.push_back({name, false, 1.3, [this, names, own = std::move(parts)](double y) {
                        double from = 0;
-                       for (const auto& [part, value] : parts) {
+                       for (const auto& [part, value] : own) {
                          draw_.box(axis_->at(from), y - lane / 2, axis_->at(from + value) - axis_->at(from), lane,
                                    fmt::format("part s{}", part % colours),
                                    fmt::format("{}: {} {}", names[part], number_text(value, 3), unit_));
                          from += value;
                        }
-                       if (parts.empty()) draw_.text(axis_->at(0) + gap, y + 4, "no value", "none");
+                       if (own.empty()) draw_.text(axis_->at(0) + gap, y + 4, "no value", "none");
                      }});
     }
     if (all.empty()) return "";
@@ -277,15 +277,15 @@ class Ranges : public RowFigure {
     }
     std::vector<Row> all;
     for (auto& [name, stretches] : std::move(met).list())
-      all.push_back({name, false, 1.3, [this, stretches = std::move(stretches)](double y) {
-                       for (const Stretch& one : stretches) {
+      all.push_back({name, false, 1.3, [this, own = std::move(stretches)](double y) {
+                       for (const Stretch& one : own) {
                          constexpr double least = 1.5;  // one value alone is seen, too
                          const double from = axis_->at(one.from), wide = std::max(axis_->at(one.to) - from, least);
                          draw_.box(from, y - lane / 2, wide, lane, fmt::format("part s{}", one.group % colours),
                                    fmt::format("{}: {} to {}", one.motion, number_text(one.from), number_text(one.to)),
                                    colours_.empty() ? "" : colours_[one.group]);
                        }
-                       if (stretches.empty()) draw_.text(axis_->at(axis_->low()) + gap, y + 4, "no value", "none");
+                       if (own.empty()) draw_.text(axis_->at(axis_->low()) + gap, y + 4, "no value", "none");
                      }});
     if (all.empty()) return "";
     return rows(std::move(all), std::move(values), groups, false, true);

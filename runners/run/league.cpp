@@ -156,8 +156,8 @@ std::string label(const Scheme& scheme, const std::vector<std::pair<Scheme, Row>
   const std::string name = value_of(scheme, "time");
   std::string out = name;
   for (const auto& [column, value] : scheme) {
-    const bool differs = std::any_of(all.begin(), all.end(), [&, column = column, value = value](const auto& other) {
-      return value_of(other.first, "time") == name && value_of(other.first, column) != value;
+    const bool differs = std::any_of(all.begin(), all.end(), [&, in = column, own = value](const auto& other) {
+      return value_of(other.first, "time") == name && value_of(other.first, in) != own;
     });
     if (differs && column != "time") out += fmt::format(", {} {}", column.substr(column.find('.') + 1), value);
   }
