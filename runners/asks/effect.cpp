@@ -57,7 +57,10 @@ void judge(Told& told, double from) {
   if (!pair.share) {
     const std::string first =
         std::abs(pair.base) <= floor ? "the first is zero, or round-off" : "the first is not told from zero";
-    if (std::abs(pair.base) <= floor && std::abs(pair.base + pair.difference) <= floor) {
+    if (pair.apart) {
+      told.verdict = Verdict::yes;
+      told.reason = "apart at every size, though neither settles";
+    } else if (std::abs(pair.base) <= floor && std::abs(pair.base + pair.difference) <= floor) {
       told.reason = "both are zero, or round-off";
     } else if (!pair.u) {
       told.reason = pair.unknown;
@@ -230,7 +233,7 @@ class EffectSpeaker {
       return std::pair(told.verdict == Verdict::yes    ? 2
                        : told.verdict == Verdict::open ? 1
                                                        : 0,
-                       told.pair ? std::abs(told.pair->difference) : 0.0);
+                       told.pair ? std::abs(told.pair->difference) + told.pair->u.value_or(0) : 0.0);
     };
     std::optional<std::size_t> best;
     for (std::size_t k = first; k < end; ++k)

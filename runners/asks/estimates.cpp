@@ -158,6 +158,12 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   out.order = limits.step ? limits.step->order : std::nullopt;
   const auto own = halves.find(finest);
   put_sampling(out, draws, own == halves.end() ? nullptr : &own->second);
+  // What the doubt would add is within what the draws leave: two sizes that differ by less tell no more of each other.
+  if (out.two && out.motion.empty() && *out.doubted_u() - *out.u() <= out.sampling.value_or(0)) {
+    out.doubt = 1;
+    out.few.clear();
+    out.two = false;
+  }
   return out;
 }
 

@@ -283,6 +283,39 @@ void widen_by(Estimate& own, const Estimate& other) {
   own.disproved = true;
 }
 
+/// Narrows `own` to what another scheme with the same limit tells: as far as both values lie apart, and what is left of
+/// the other. One that moves, or is known by two sizes alone, tells nothing.
+void narrow_by(Estimate& own, const Estimate& other) {
+  if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty() || other.two) return;
+  const double told = std::abs(own.value - other.value) + other.doubt * *other.step;
+  if (told >= own.doubt * *own.step) return;
+  own.step = told;
+  own.doubt = own.mesh ? other.doubt : 1;
+  own.few = own.mesh ? other.few : "";
+  own.motion.clear();
+  own.two = false;
+}
+
+/// Whether two points are means over the same draws at the same size.
+bool same_draws(const Point& a, const Point& b) {
+  const auto &own = a.values.at(*a.finest), &other = b.values.at(*b.finest);
+  return a.finest->second == b.finest->second &&
+         std::equal(own.begin(), own.end(), other.begin(), other.end(),
+                    [](const auto& one, const auto& two) { return one.first == two.first; });
+}
+
+/// The estimate of a point beside those of others with the same limit.
+Estimate tested(const Point& point, const std::vector<Point>& peers) {
+  Estimate out = *point.estimate;
+  for (const Point& peer : peers) {
+    if (!same_draws(point, peer)) continue;
+    Estimate widened = *point.estimate;
+    widen_by(widened, *peer.estimate);
+    if (widened.step > out.step) out = widened;
+  }
+  return out;
+}
+
 }  // namespace
 
 void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& name,
@@ -306,21 +339,18 @@ void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& na
   std::erase_if(all, [&](const CaseRecord* one) { return !peers.contains(key(*one, others) + '\n'); });
   for (Point& peer : alone(name, all, told, shares))
     if (peer.estimate && is_compliant(peer)) peers[key(peer.first(), others) + '\n'].push_back(std::move(peer));
-  const auto same_draws = [](const Point& a, const Point& b) {
-    const auto &own = a.values.at(*a.finest), &other = b.values.at(*b.finest);
-    return a.finest->second == b.finest->second &&
-           std::equal(own.begin(), own.end(), other.begin(), other.end(),
-                      [](const auto& one, const auto& two) { return one.first == two.first; });
-  };
+  for (Point& point : points)
+    if (!point.limit.empty()) point.estimate = tested(point, peers[point.limit]);
+  // What no other disproves tells the others where to look.
+  for (auto& [limit, group] : peers) {
+    std::vector<Estimate> estimates;
+    for (const Point& peer : group) estimates.push_back(tested(peer, group));
+    for (std::size_t k = 0; k < group.size(); ++k) group[k].estimate = estimates[k];
+  }
   for (Point& point : points) {
-    if (point.limit.empty()) continue;
-    const Estimate own = *point.estimate;
-    for (const Point& peer : peers[point.limit]) {
-      if (!same_draws(point, peer)) continue;
-      Estimate widened = own;
-      widen_by(widened, *peer.estimate);
-      if (widened.step > point.estimate->step) point.estimate = widened;
-    }
+    if (point.limit.empty() || point.estimate->disproved) continue;
+    for (const Point& peer : peers[point.limit])
+      if (!peer.estimate->disproved && same_draws(point, peer)) narrow_by(*point.estimate, *peer.estimate);
   }
 }
 

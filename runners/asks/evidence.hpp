@@ -155,7 +155,8 @@ class Evidence {
   /// points(), each by its own refinement alone.
   std::vector<Point> alone(const std::string& measure, const Cases& cases, const std::vector<std::string>& columns,
                            bool shares) const;
-  /// Widens these by what other schemes with the same limit show, whether they are asked or not.
+  /// Widens these where another scheme with the same limit excludes them, and narrows them to where one has settled,
+  /// whether it is asked or not.
   void test_by_schemes(std::vector<Point>& points, const std::string& measure, const std::vector<std::string>& columns,
                        bool shares) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace ricochet::asks {
 namespace {
@@ -37,6 +38,40 @@ Pair pair_beyond(const Point& first, const Point& second) {
   else
     out.share = (a.beyond ? b.high() - a.value : b.value - a.high()) / a.value;
   return out;
+}
+
+using Common = std::map<Size, std::map<std::string, double>>;  // sizes and draws that both have
+
+/// Whether the values of a point fall with a refinement as what converges to zero does, from the coarsest size and from
+/// the last but one to the finest.
+bool falls(const Point& point, const Common& common, const Size& finest, bool steps) {
+  std::map<double, double> along;  // by the size, the finest first
+  for (const auto& [size, by_seed] : common) {
+    if (steps ? size.second != finest.second : size.first != finest.first) continue;
+    double& most = along[steps ? size.first : 1 / size.second];
+    for (const auto& [seed, difference] : by_seed) most = std::max(most, std::abs(point.values.at(size).at(seed)));
+  }
+  const auto converges = [&](const auto& coarser) {
+    return along.begin()->second < coarser.second * std::pow(along.begin()->first / coarser.first, lowest_order);
+  };
+  return along.size() > 1 && converges(*std::next(along.begin())) && converges(*along.rbegin());
+}
+
+/// Pair::apart, of these sizes.
+bool are_apart(const Point& first, const Point& second, const Common& common, const Size& finest) {
+  constexpr double times = 10;
+  double least[2] = {INFINITY, INFINITY}, most[2] = {0, 0};
+  for (const auto& [size, by_seed] : common)
+    for (const auto& [seed, difference] : by_seed)
+      for (const int side : {0, 1}) {
+        const double value = std::abs((side == 0 ? first : second).values.at(size).at(seed));
+        least[side] = std::min(least[side], value);
+        most[side] = std::max(most[side], value);
+      }
+  const int larger = least[0] > least[1] ? 0 : 1;
+  const Point& one = larger == 0 ? first : second;
+  return common.size() > 1 && least[larger] > times * std::max({most[1 - larger], first.floor, second.floor}) &&
+         !falls(one, common, finest, true) && !falls(one, common, finest, false);
 }
 
 }  // namespace
@@ -79,6 +114,7 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
       std::all_of(differences.begin(), differences.end(), [](const auto& sized) {
         return std::all_of(sized.second.begin(), sized.second.end(), [](const auto& one) { return one.second == 0; });
       });
+  out.apart = are_apart(first, second, differences, *finest);
   const bool has_step = first.estimate && first.estimate->has_step;
   const auto own_u = [&](const Point& point, bool doubted) -> std::optional<double> {
     if (point.finest != finest || !point.estimate || !point.estimate->has_interval()) return std::nullopt;

@@ -25,6 +25,9 @@ struct Pair {
   bool identical = false;                 ///< the same to the last bit at each of several sizes, and not nothing
   bool one_limit = false;                 ///< of two schemes that lead to one limit, where the difference is zero
   bool least = false;                     ///< one of the two lies beyond its range: the difference is larger than this
+  /// At each of several sizes one is ten times what the other is at any, and it does not fall to zero: they differ
+  /// though neither settles.
+  bool apart = false;
 };
 
 /// What refinement and draws leave of the difference of two points: what moves both alike cancels. Seeds are paired.

@@ -18,16 +18,18 @@ namespace {
 
 using asks::VerdictRow;
 
-/// A measure, or an axis, in words.
-std::string words_of(const std::string& name) {
-  return name.empty() ? "" : measure_info(name) ? answers::measure_words(name).words : spoken(name);
-}
-
 std::string unit_of(const VerdictRow& row) {
   return row.unit == "1" ? "" : row.unit;
 }
 
 }  // namespace
+
+std::string subject_words(const VerdictRow& row) {
+  if (row.measure.empty()) return "";
+  for (const std::string& name : {row.measure, row.measure + "[" + row.stop + "]"})
+    if (measure_info(name)) return answers::measure_words(name).words;
+  return spoken(row.measure);
+}
 
 std::string value_cell(const VerdictRow& row) {
   if (!row.value && row.low && row.high && *row.low == *row.high) return short_number(*row.low);
@@ -79,7 +81,7 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
                "verdict"};
   constexpr std::size_t values = 3;
   for (const VerdictRow& row : answered.rows)
-    out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "", measures.size() > 1 ? words_of(row.measure) : "",
+    out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "", measures.size() > 1 ? subject_words(row) : "",
                         value(row),
                         row.verdict + (row.reason.empty() ? "" : (row.verdict.empty() ? "" : ": ") + row.reason)});
   out.values = values;

@@ -9,6 +9,9 @@ namespace ricochet {
 /// "1.44 ± 0.13", in the digits of the sentences; "8e-4 to 0.001" of what is known by its bounds alone.
 std::string value_cell(const asks::VerdictRow& row);
 
+/// What a row is of, a measure or an axis, in words. Some measures are known with their stop alone, and name it.
+std::string subject_words(const asks::VerdictRow& row);
+
 /// The rows of one answer: values with as many digits as their uncertainty allows, the unit in the head where all have
 /// one; columns that are empty throughout are left out.
 report::AskedTable asked_rows(const asks::Answered& answered);

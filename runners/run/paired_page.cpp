@@ -28,8 +28,9 @@ std::string unit_text(const VerdictRow& row) {
 }
 
 std::string words_of(const VerdictRow& row) {
-  const std::string words = row.measure.empty() ? "" : answers::measure_words(row.measure).words;
-  return words + (row.stop.empty() ? "" : (words.empty() ? "" : " at ") + row.stop);
+  const std::string words = subject_words(row);
+  if (row.stop.empty() || words.find(row.stop) != std::string::npos) return words;
+  return words + (words.empty() ? "" : " at ") + row.stop;
 }
 
 std::string name_of(const PairedValue& value, bool with_measure) {

@@ -159,6 +159,41 @@ TEST_CASE("asks: two sizes decide three times what first order leaves of them") 
   CHECK(below({4e-3, 4e-4}, 1.25).passes == Verdict::yes);
 }
 
+TEST_CASE("asks: what two sizes leave is no doubt where draws leave more") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}, {seed_axis, {"1", "2", "3", "4", "5", "6"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.steps = {4e-3, 2e-3};
+  made.error = 0.02;
+  const auto doubt = [&](double scatter) {
+    made.scatter = scatter;
+    return answer_of(made.results(), {{"value", "impulse"}}).rows.front().reason;
+  };
+  CHECK(doubt(0.2).empty());
+  CHECK(doubt(0.002) == "it is known by two steps alone");
+}
+
+TEST_CASE("asks: what differs ten times at every size differs, though neither settles, unless it falls to zero") {
+  const auto verdict = [](const std::vector<double>& first, const std::vector<double>& second) {
+    const std::vector<double> steps = {4e-3, 2e-3, 1e-3, 5e-4};
+    const StudyResults results = synthetic::full_factorial(
+        {{"time", {"t0", "t1"}}}, steps,
+        [&](const std::vector<std::size_t>& at, double h) {
+          const auto k = static_cast<std::size_t>(std::find(steps.begin(), steps.end(), h) - steps.begin());
+          return (at[0] == 0 ? first : second)[k];
+        },
+        "largest_step_gain");
+    return answer_of(results, {{"effect", "time"}, {"on", "largest_step_gain"}, {"from", 0.01}}).passes;
+  };
+  const std::vector<double> wanders = {0.1, 5, 0.2, 3}, none = {1e-15, 2e-15, 1e-15, 2e-15};
+  CHECK(verdict(wanders, none) == Verdict::yes);
+  CHECK(verdict(none, wanders) == Verdict::yes);
+  // A crossing at one size is no difference of all.
+  CHECK(verdict(wanders, {0.001, 0.3, 0.001, 0.001}) == Verdict::open);
+  // Both have the limit zero.
+  CHECK(verdict({0.4, 0.08, 0.03, 0.005}, none) != Verdict::yes);
+}
+
 TEST_CASE("asks: the order of three sizes alone may be chance, that of four is confirmed") {
   Made made;
   made.choices = {{"mass", {"m0"}}};
@@ -799,6 +834,31 @@ TEST_CASE("asks: schemes of a compliant law have one limit, and intervals that e
   std::erase_if(results.cases, [](const CaseRecord& one) { return one.axes[1].second == "t1"; });
   CHECK(answer_of(results, limit).passes == Verdict::yes);
   CHECK(answer_of(results, effect).passes == Verdict::no);
+  // One that has not settled is known by one that has.
+  StudyResults rough = synthetic::full_factorial(
+      {{"mass", {"m0"}}, {"time", {"t0", "t1"}}}, {8e-3, 4e-3, 2e-3, 1e-3},
+      [](const std::vector<std::size_t>& at, double h) {
+        return 1 + h * h + (at[1] == 1 ? (h == 2e-3 ? 0.3 : 0.1) : 0);
+      },
+      "impulse");
+  const Json of_rough = {{"value", "impulse"}, {"where", {{"time", "t1"}}}};
+  const VerdictRow before = answer_of(rough, of_rough).rows.front();
+  for (CaseRecord& record : rough.cases) record.measures.emplace_back("contact_steps", 40.0);
+  const VerdictRow row = answer_of(rough, of_rough).rows.front();
+  CHECK(before.verdict == "not settled");
+  CHECK(row.verdict == "known");
+  CHECK((*row.low < 1 && *row.high > 1));
+  CHECK(*row.high - *row.low < *before.high - *before.low);
+  CHECK(answer_of(rough, {{"limit", "impulse"}, {"below", 1.25}, {"where", {{"time", "t1"}}}}).passes == Verdict::yes);
+  // Two that disagree know nothing of a third.
+  StudyResults apart = synthetic::full_factorial(
+      {{"mass", {"m0"}}, {"time", {"t0", "t1", "t2"}}}, {8e-3, 4e-3, 2e-3, 1e-3},
+      [](const std::vector<std::size_t>& at, double h) {
+        return at[1] == 2 ? (h == 2e-3 ? 1.3 : 1.1) : 1 + 0.2 * static_cast<double>(at[1]) + h * h;
+      },
+      "impulse");
+  for (CaseRecord& record : apart.cases) record.measures.emplace_back("contact_steps", 40.0);
+  CHECK(answer_of(apart, {{"value", "impulse"}, {"where", {{"time", "t2"}}}}).rows.front().verdict != "known");
   // One that has not settled itself disproves nothing.
   StudyResults loose = synthetic::full_factorial(
       {{"mass", {"m0"}}, {"time", {"t0", "t1"}}}, {8e-3, 4e-3, 2e-3, 1e-3},
