@@ -230,10 +230,12 @@ class EffectSpeaker {
   /// Of those that apply alone where `applying`; nothing where none does.
   std::optional<std::size_t> deciding(std::size_t first, std::size_t end, bool applying) const {
     const auto rank = [](const Told& told) {
+      // Where all agree, it is the one that could be largest.
+      const double u = told.pair && told.verdict == Verdict::no ? told.pair->u.value_or(0) : 0;
       return std::pair(told.verdict == Verdict::yes    ? 2
                        : told.verdict == Verdict::open ? 1
                                                        : 0,
-                       told.pair ? std::abs(told.pair->difference) + told.pair->u.value_or(0) : 0.0);
+                       told.pair ? std::abs(told.pair->difference) + u : 0.0);
     };
     std::optional<std::size_t> best;
     for (std::size_t k = first; k < end; ++k)

@@ -289,6 +289,10 @@ void narrow_by(Estimate& own, const Estimate& other) {
   if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty() || other.two) return;
   const double told = std::abs(own.value - other.value) + other.doubt * *other.step;
   if (told >= own.doubt * *own.step) return;
+  if (told > *own.step) {
+    if (!own.mesh) own.doubt = told / *own.step;
+    return;
+  }
   own.step = told;
   own.doubt = own.mesh ? other.doubt : 1;
   own.few = own.mesh ? other.few : "";
