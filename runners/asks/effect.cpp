@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/lines.hpp"
@@ -33,6 +34,12 @@ struct Told {
   bool applies = true;   // neither level is refused throughout
 };
 
+/// Whether some of its cases met a stop.
+bool touched(const Point& point) {
+  return std::any_of(point.behind.begin(), point.behind.end(),
+                     [](const CaseRecord* one) { return measure(*one, "contact_instants").value_or(0) > 0; });
+}
+
 /// Whether the difference is as large as asked. Nothing in both is no agreement.
 void judge(Told& told, double from) {
   if (!told.pair) {
@@ -61,6 +68,8 @@ void judge(Told& told, double from) {
       told.verdict = Verdict::yes;
       told.reason = "apart at every size, though neither settles";
     } else if (std::abs(pair.base) <= floor && std::abs(pair.base + pair.difference) <= floor) {
+      // Zero after contact is a result.
+      if (touched(*pair.first) && touched(*pair.second)) told.verdict = Verdict::no;
       told.reason = "both are zero, or round-off";
     } else if (!pair.u) {
       told.reason = pair.unknown;
@@ -190,11 +199,15 @@ class EffectSpeaker {
     told.pair = pair_of(a.point, b.point);
     judge(told, from_);
     if (told.verdict != Verdict::no) return told;
+    const std::string zero = std::exchange(told.reason, "");
     if (acts_at_stops() && untouched(a.point) && untouched(b.point))
       told.reason = "no stop is touched";
     else if (doubtful(a.point) || doubtful(b.point))
       told.reason = "the runs are doubtful";
-    if (!told.reason.empty()) told.verdict = Verdict::open;
+    if (!told.reason.empty())
+      told.verdict = Verdict::open;
+    else
+      told.reason = zero;
     return told;
   }
 

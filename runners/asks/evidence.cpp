@@ -378,11 +378,11 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   for (auto& [key, point] : std::move(groups).list()) {
     double scale = 0, values = 0;  // of round-off, of solves
     bool counts = true;            // whole numbers have neither
-    const bool limitless = answers::without_limit(study_, point.cases, measure_of_all);
+    point.without_limit = answers::without_limit(study_, point.cases, measure_of_all);
     for (const CaseRecord* record : point.cases) {
-      const auto value = record->status != Status::done || limitless ? std::nullopt
-                         : shares                                    ? answers::scaled_value(words, *record)
-                                                                     : told_measure(*record, measure_of_all);
+      const auto value = record->status != Status::done || point.without_limit ? std::nullopt
+                         : shares                                              ? answers::scaled_value(words, *record)
+                                                                               : told_measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
       if (!mesh_chosen && !study_.on_finest_mesh(*record)) continue;

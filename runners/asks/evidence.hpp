@@ -70,6 +70,7 @@ struct Point {
   std::optional<Estimate> estimate;
   std::string none;                ///< why it has no value
   bool of_untouched_stop = false;  ///< whether that is because nothing ever touches its stop
+  bool without_limit = false;      ///< whether that is because its law leaves the measure no limit in the step
   /// Equal for points of a compliant law that differ in the time scheme alone: as the step shrinks their values have
   /// one limit. "" where no limit is known to be shared.
   std::string limit;

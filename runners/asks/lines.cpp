@@ -21,8 +21,8 @@ std::string Line::place() const {
 }
 
 bool Line::applies() const {
-  return std::any_of(point.cases.begin(), point.cases.end(),
-                     [](const CaseRecord* one) { return one->status != Status::refused; });
+  return !point.without_limit && std::any_of(point.cases.begin(), point.cases.end(),
+                                             [](const CaseRecord* one) { return one->status != Status::refused; });
 }
 
 bool Lines::any_applies() const {

@@ -16,7 +16,8 @@ struct Line {
   bool one_stop = false;                     ///< whether all lines are of this stop, which the measure's words name
 
   bool known() const { return point.estimate.has_value(); }
-  /// Whether some of its cases could run; what is refused throughout decides nothing where others could.
+  /// Whether some of its cases could run, and its law leaves the measure a limit; else it decides nothing where others
+  /// do.
   bool applies() const;
   const Estimate& estimate() const { return *point.estimate; }
   /// "with hrz, stiffness 1e8 N/m at end": what tells it from the other lines; "".

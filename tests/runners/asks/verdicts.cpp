@@ -7,6 +7,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <set>
 
+#include "runners/store/study_tables.hpp"
 #include "tests/runners/asks/made_tables.hpp"
 
 using namespace ricochet;
@@ -665,6 +666,36 @@ TEST_CASE("asks: nothing on both sides is no agreement") {
   const Answered answered = answer_of(made.results(), {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.05}});
   CHECK(answered.passes == Verdict::open);
   CHECK(answered.reason == "both are zero, or round-off");
+  // What is zero after contact is a result.
+  StudyResults touched = made.results();
+  for (CaseRecord& record : touched.cases) record.measures.emplace_back("contact_instants", 7.0);
+  const Answered after = answer_of(touched, {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.05}});
+  CHECK(after.passes == Verdict::no);
+  CHECK(after.rows.front().reason == "both are zero, or round-off");
+}
+
+TEST_CASE("asks: a level whose law leaves the measure no limit decides nothing where others do") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"contact", {"rigid", "spring"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 3.0; };
+  made.error = 0.01;
+  StudyResults results = made.results();
+  const auto leave_out = [&](const char* law) {
+    for (CaseRecord& record : results.cases)
+      if (record.axes[1].second == law) record.left_out.emplace_back("impulse", no_limit);
+  };
+  const Json effect = {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.05}},
+             limit = {{"limit", "impulse"}, {"below", 4}};
+  leave_out("rigid");
+  for (const Json& ask : {effect, limit}) {
+    const Answered answered = answer_of(results, ask);
+    INFO(answered.sentence);
+    CHECK(answered.passes == (ask == effect ? Verdict::no : Verdict::yes));
+    REQUIRE_FALSE(answered.aside.empty());
+    CHECK_THAT(answered.aside.front(), Catch::StartsWith("Left out: 8 without a value: no limit as the step shrinks"));
+  }
+  leave_out("spring");
+  for (const Json& ask : {effect, limit}) CHECK(answer_of(results, ask).passes == Verdict::open);
 }
 
 TEST_CASE("asks: no contact law agrees with another where no stop is touched, and masses do") {
