@@ -42,7 +42,7 @@ Kept kept(const Line& line, const Bounds& bounds) {
   const MeasureInfo* info = measure_info(line.measure + (line.stop.empty() ? "" : "[" + line.stop + "]"));
   const bool mean = !line.point.halves.empty() || (info && info->mean);
   if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && !mean) {
-    const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
+    const double refinement = one.left();
     out.draws = draws.size();
     for (const auto& [seed, value] : draws) {
       all = all && keeps(bounds, value - refinement, value + refinement);

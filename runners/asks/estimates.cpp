@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <tuple>
 
 #include "runners/asks/evidence.hpp"
 
@@ -37,8 +36,7 @@ std::optional<double> Estimate::u() const {
 }
 
 std::optional<double> Estimate::doubted_u() const {
-  const std::optional<double> known = u();
-  return known ? std::optional(*known + (doubt - 1) * (step.value_or(0) + mesh.value_or(0))) : std::nullopt;
+  return u() ? std::optional(left() + sampling.value_or(0)) : std::nullopt;
 }
 
 namespace {
@@ -111,6 +109,34 @@ void put_sampling(Estimate& out, const BySeed& draws, const BySeed* halves) {
   out.scattered = out.sampling.has_value();
 }
 
+/// Why what a refinement tells may be farther than u from the limit, and how many times u that is.
+struct Doubt {
+  enum class Kind { none, restless, two, three };
+  Kind kind = Kind::none;
+  double times = 1;
+  std::string text = {};
+  double added(const std::optional<double>& u) const { return (times - 1) * u.value_or(0); }
+};
+
+/// What moves one way goes on, what wanders stays about where it is. Of two sizes three times what first order leaves,
+/// 3 |d|/(r − 1) (Roache, 1994), where u is |d|. The order of three sizes alone may be chance.
+Doubt doubt_of(const std::optional<Limit>& limit, const char* what, const char* several) {
+  constexpr double of_moving = 10, of_wandering = 2, of_two = 3, of_three = 3;
+  if (!limit) return {};
+  if (limit->restless())
+    return {Doubt::Kind::restless, limit->status == LimitStatus::moves ? of_moving : of_wandering,
+            std::string(limit->trend > 0   ? "still rises"
+                        : limit->trend < 0 ? "still falls"
+                                           : "wanders") +
+                " with the " + what};
+  if (limit->status == LimitStatus::two && limit->ratio > 1 && of_two > limit->ratio - 1)
+    return {Doubt::Kind::two, of_two / (limit->ratio - 1), std::string("is known by two ") + several + " alone"};
+  if (limit->status == LimitStatus::settles && !limit->order)
+    return {Doubt::Kind::three, *limit->uncertainty < limit->range ? of_three : 1,
+            std::string("is known by three ") + several + " alone"};
+  return {};
+}
+
 }  // namespace
 
 Limits limits_at(const std::map<Size, BySeed>& values, const Size& finest, double floor, Errors errors) {
@@ -131,36 +157,24 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   out.mesh = left_by(limits.mesh);
   for (const auto& one : {limits.step, limits.mesh})
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
-  // What moves one way goes on, what wanders stays about where it is. Of two sizes three times what first order leaves,
-  // 3 |d|/(r − 1) (Roache, 1994), where u is |d|. The order of three sizes alone may be chance.
-  constexpr double of_moving = 10, of_wandering = 2, of_two = 3, of_three = 3;
-  for (const auto& [limit, what, several] :
-       {std::tuple(limits.step, "step", "steps"), std::tuple(limits.mesh, "mesh", "meshes")}) {
-    if (!limit) continue;
-    if (limit->restless()) {
-      out.doubt = std::max(out.doubt, limit->status == LimitStatus::moves ? of_moving : of_wandering);
-      if (out.motion.empty())
-        out.motion = std::string(limit->trend > 0   ? "still rises"
-                                 : limit->trend < 0 ? "still falls"
-                                                    : "wanders") +
-                     " with the " + what;
-    } else if (limit->status == LimitStatus::two && limit->ratio > 1 && of_two > limit->ratio - 1) {
-      out.doubt = std::max(out.doubt, of_two / (limit->ratio - 1));
-      if (!out.two) out.few = std::string("is known by two ") + several + " alone";
-      out.two = true;
-    } else if (limit->status == LimitStatus::settles && !limit->order) {
-      if (*limit->uncertainty < limit->range) out.doubt = std::max(out.doubt, of_three);
-      if (out.few.empty()) out.few = std::string("is known by three ") + several + " alone";
-    }
-  }
+  const Doubt of_step = doubt_of(limits.step, "step", "steps"), of_mesh = doubt_of(limits.mesh, "mesh", "meshes");
+  out.step_doubt = of_step.times;
+  out.mesh_doubt = of_mesh.times;
+  // What leaves more open is told.
+  const bool step_first = of_step.added(out.step) >= of_mesh.added(out.mesh) && of_step.kind != Doubt::Kind::none;
+  const Doubt& told = step_first ? of_step : of_mesh;
+  (told.kind == Doubt::Kind::restless ? out.motion : out.few) = told.text;
+  out.two = told.kind == Doubt::Kind::two;
   if (out.grows) out.motion = "grows without bound";
   out.vanishes = limits.step && limits.step->status == LimitStatus::vanishes;
   out.order = limits.step ? limits.step->order : std::nullopt;
   const auto own = halves.find(finest);
   put_sampling(out, draws, own == halves.end() ? nullptr : &own->second);
   // What the doubt would add is within what the draws leave: two sizes that differ by less tell no more of each other.
-  if (out.two && out.motion.empty() && *out.doubted_u() - *out.u() <= out.sampling.value_or(0)) {
-    out.doubt = 1;
+  const auto at_most_two = [](const Doubt& one) { return one.times == 1 || one.kind == Doubt::Kind::two; };
+  if (out.two && at_most_two(of_step) && at_most_two(of_mesh) &&
+      *out.doubted_u() - *out.u() <= out.sampling.value_or(0)) {
+    out.step_doubt = out.mesh_doubt = 1;
     out.few.clear();
     out.two = false;
   }

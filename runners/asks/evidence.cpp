@@ -272,13 +272,13 @@ bool is_compliant(const Point& point) {
 void widen_by(Estimate& own, const Estimate& other) {
   if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty()) return;
   const auto left = [](const Estimate& one) {
-    return (one.motion.empty() ? 1 : one.doubt) * *one.step + one.sampling.value_or(0);
+    return (one.motion.empty() ? 1 : one.step_doubt) * *one.step + one.sampling.value_or(0);
   };
   const double apart = std::abs(own.value - other.value);
   if (apart <= left(own) + left(other)) return;
-  const double before = own.doubt * *own.step;
+  const double before = own.step_doubt * *own.step;
   own.step = apart + *other.step;
-  own.doubt = std::max(1.0, before / *own.step);
+  own.step_doubt = std::max(1.0, before / *own.step);
   own.few = "disagrees with another scheme, though both have one limit";
   own.disproved = true;
 }
@@ -287,15 +287,12 @@ void widen_by(Estimate& own, const Estimate& other) {
 /// the other. One that moves, or is known by two sizes alone, tells nothing.
 void narrow_by(Estimate& own, const Estimate& other) {
   if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty() || other.two) return;
-  const double told = std::abs(own.value - other.value) + other.doubt * *other.step;
-  if (told >= own.doubt * *own.step) return;
-  if (told > *own.step) {
-    if (!own.mesh) own.doubt = told / *own.step;
-    return;
-  }
-  own.step = told;
-  own.doubt = own.mesh ? other.doubt : 1;
-  own.few = own.mesh ? other.few : "";
+  const double told = std::abs(own.value - other.value) + other.step_doubt * *other.step;
+  if (told >= own.step_doubt * *own.step) return;
+  own.step_doubt = std::max(1.0, told / *own.step);
+  own.step = std::min(*own.step, told);
+  if (own.doubted()) return;
+  own.few.clear();
   own.motion.clear();
   own.two = false;
 }

@@ -29,7 +29,8 @@ struct Estimate {
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
   bool one_mesh = false;             ///< of several that were asked one alone has a value
   bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
-  double doubt = 1;                  ///< of what is not settled: so many times step + mesh may be left to its limit
+  double step_doubt = 1;             ///< where the step is not settled: so many times `step` may be left to the limit
+  double mesh_doubt = 1;             ///< likewise of the mesh
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
   bool has_step = true;  ///< whether its study has a step to refine
@@ -40,8 +41,11 @@ struct Estimate {
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.
   std::optional<double> u() const;
-  /// The same with all that refinement may leave.
+  /// All that refinement may leave.
+  double left() const { return step_doubt * step.value_or(0) + mesh_doubt * mesh.value_or(0); }
+  /// u with that.
   std::optional<double> doubted_u() const;
+  bool doubted() const { return step_doubt > 1 || mesh_doubt > 1; }
   /// Whether value ± u holds all that leaves it open.
   bool has_interval() const { return u() && unknown().empty(); }
   double low() const { return beyond ? value : value - u().value_or(0); }

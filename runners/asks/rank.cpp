@@ -223,9 +223,9 @@ class Ranking {
       if (!one.has_interval()) return order.names[other] + " has no interval";
       if (other != k && own.low() <= one.high() && one.low() <= own.high())
         return "its interval touches that of a neighbour";
-      if (other != k && one.doubt > 1 && moving.empty()) moving = "a neighbour " + one.unsettled();
+      if (other != k && one.doubted() && moving.empty()) moving = "a neighbour " + one.unsettled();
     }
-    return own.doubt > 1 ? "it " + own.unsettled() : moving.empty() ? "a neighbour has no interval" : moving;
+    return own.doubted() ? "it " + own.unsettled() : moving.empty() ? "a neighbour has no interval" : moving;
   }
 
   void add_rows(Answered& out, const Order& order) const {

@@ -159,6 +159,26 @@ TEST_CASE("asks: two sizes decide three times what first order leaves of them") 
   CHECK(below({4e-3, 4e-4}, 1.25).passes == Verdict::yes);
 }
 
+TEST_CASE("asks: a step that moves by little casts no doubt on the mesh, and what leaves more open is told") {
+  const std::vector<double> steps = {4e-3, 2e-3, 1e-3, 5e-4};
+  const auto kept = [&](double of_step) {
+    const StudyResults results = synthetic::full_factorial(
+        {{"mass", {"m0"}}, {"elements", {"8", "16"}}}, steps,
+        [&](const std::vector<std::size_t>& at, double h) {
+          const auto halvings = static_cast<double>(std::find(steps.begin(), steps.end(), h) - steps.begin());
+          return 1 + (at[1] == 0 ? 0.02 : 0.01) + of_step * halvings * halvings;
+        },
+        "impulse");
+    return answer_of(results, {{"limit", "impulse"}, {"below", 1.06}});
+  };
+  // The mesh may leave 0.03, the step ten times what it moves by.
+  CHECK(kept(1e-6).passes == Verdict::yes);
+  const Answered much = kept(2e-3);
+  INFO(much.sentence);
+  CHECK(much.passes == Verdict::open);
+  CHECK(much.reason == "it still rises with the step");
+}
+
 TEST_CASE("asks: what two sizes leave is no doubt where draws leave more") {
   Made made;
   made.choices = {{"mass", {"m0"}}, {seed_axis, {"1", "2", "3", "4", "5", "6"}}};
