@@ -137,6 +137,30 @@ Doubt doubt_of(const std::optional<Limit>& limit, const char* what, const char* 
   return {};
 }
 
+/// Whether what a refinement moved last is the chance of draws: those do not move one way, and their mean by less than
+/// its 95 % interval, from the size before the finest and from the one before that.
+bool is_chance(const std::map<Size, BySeed>& values, const Size& finest, bool steps) {
+  std::map<double, const BySeed*> sizes;  // the finest first
+  for (const auto& [size, by_seed] : values)
+    if (steps ? size.second == finest.second : size.first == finest.first)
+      sizes[steps ? size.first : 1 / size.second] = &by_seed;
+  if (sizes.size() < 2) return false;
+  constexpr std::size_t looked_at = 2;
+  std::size_t looked = 0;
+  for (auto coarser = std::next(sizes.begin()); coarser != sizes.end() && looked < looked_at; ++coarser, ++looked) {
+    std::vector<double> moves;
+    for (const auto& [seed, value] : *sizes.begin()->second)
+      if (const auto before = coarser->second->find(seed); before != coarser->second->end())
+        moves.push_back(value - before->second);
+    const std::optional<double> half = half_interval(moves);
+    const auto [least, most] = std::minmax_element(moves.begin(), moves.end());
+    if (!half || *least >= 0 || *most <= 0) return false;
+    if (std::abs(std::accumulate(moves.begin(), moves.end(), 0.0)) > *half * static_cast<double>(moves.size()))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Limits limits_at(const std::map<Size, BySeed>& values, const Size& finest, double floor, Errors errors) {
@@ -157,7 +181,11 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   out.mesh = left_by(limits.mesh);
   for (const auto& one : {limits.step, limits.mesh})
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
-  const Doubt of_step = doubt_of(limits.step, "step", "steps"), of_mesh = doubt_of(limits.mesh, "mesh", "meshes");
+  const auto doubt = [&](const std::optional<Limit>& limit, bool steps) {
+    if (limit && is_chance(values, finest, steps)) return Doubt{};
+    return steps ? doubt_of(limit, "step", "steps") : doubt_of(limit, "mesh", "meshes");
+  };
+  const Doubt of_step = doubt(limits.step, true), of_mesh = doubt(limits.mesh, false);
   out.step_doubt = of_step.times;
   out.mesh_doubt = of_mesh.times;
   // What leaves more open is told.

@@ -21,10 +21,10 @@ class GapWatch {
   }
 
   /// What the integration did in steps too long for its gaps, a sentence each. `crossed`: a point comes to its stop
-  /// with a speed that crosses the gap in a step. `passed`: a point passes its stop by more than the gap. `recorder`:
-  /// of the whole integration.
+  /// with a speed that crosses the gap in a step. `passed`: a point passes its stop by more than the gap; of contacts
+  /// that the steps resolve, which a soft stop explains, by more than ten. `recorder`: of the whole integration.
   static Said crossed(const Marcher& marcher, const ImpactRecorder& recorder);
-  Said passed() const;
+  Said passed(bool resolved) const;
 
  private:
   void update(const Marcher& marcher, double penetration);

@@ -448,7 +448,6 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const auto restitution = largest_restitution(study_case, *problem, registry);
   add_contact(record, contacts, marcher, restitution, {&outputs, &tangents, &friction});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
-  doubts.push_back(sampler.gaps().passed());
   if (const PluginManual* law = registry.manual(Role::contact, study_case.contact.name))
     doubts.push_back(beyond_table(study_case.contact, *law, measure(record, "deepest_penetration").value_or(0)));
   doubts.push_back(struck.told(marcher, restitution));
@@ -456,6 +455,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
       contact_steps(study_case, marcher, recorder, measure(record, "deepest_penetration").value_or(0), registry);
   if (resolved) put_measure(record, contact_steps_measure, resolved->steps);
   doubts.push_back(unresolved(resolved));
+  doubts.push_back(sampler.gaps().passed(resolved && resolved->steps >= fewest_contact_steps));
   add_doubts(record, doubts);
   if (orbits.any()) record.numbers.push_back(orbits.finish());
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));

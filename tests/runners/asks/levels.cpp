@@ -179,6 +179,27 @@ TEST_CASE("asks: a step that moves by little casts no doubt on the mesh, and wha
   CHECK(much.reason == "it still rises with the step");
 }
 
+TEST_CASE("asks: what draws move by chance from step to step is no trend, what moves them all is") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}, {seed_axis, {"1", "2", "3", "4", "5", "6", "7", "8"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  const auto trends = [&] {
+    int count = 0;
+    for (made.first_seed = 1; made.first_seed <= 40; ++made.first_seed) {
+      const std::string reason = answer_of(made.results(), {{"value", "impulse"}}).rows.front().reason;
+      count += reason.find("with the step") != std::string::npos;
+    }
+    return count;
+  };
+  made.chance = 0.1;
+  CHECK(trends() <= 8);  // two moves are looked at, each beyond its interval in one of twenty
+  made.chance = 0;
+  made.scatter = 0.1;
+  made.error = 0.2;
+  made.order = 0.05;
+  CHECK(trends() == 40);
+}
+
 TEST_CASE("asks: what two sizes leave is no doubt where draws leave more") {
   Made made;
   made.choices = {{"mass", {"m0"}}, {seed_axis, {"1", "2", "3", "4", "5", "6"}}};
