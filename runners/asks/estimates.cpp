@@ -27,6 +27,7 @@ std::optional<double> half_interval(const std::vector<double>& draws) {
 std::string Estimate::unknown() const {
   if (grows) return "";
   if (has_step && !step) return "one step: what it leaves open is not known";
+  if (one_draw) return "one seed: what other draws leave is not known";
   return one_mesh ? "one mesh alone has a value" : "";
 }
 
@@ -137,15 +138,15 @@ Doubt doubt_of(const std::optional<Limit>& limit, const char* what, const char* 
   return {};
 }
 
-/// Whether what a refinement moved last is the chance of draws: those do not move one way, and their mean by less than
-/// its 95 % interval, from the size before the finest and from the one before that.
+/// Whether what a refinement moved last is the chance of draws: their mean moves by less than its 95 % interval, from
+/// the size before the finest and from the one before that. Few draws, of which that is wide, do not move one way.
 bool is_chance(const std::map<Size, BySeed>& values, const Size& finest, bool steps) {
   std::map<double, const BySeed*> sizes;  // the finest first
   for (const auto& [size, by_seed] : values)
     if (steps ? size.second == finest.second : size.first == finest.first)
       sizes[steps ? size.first : 1 / size.second] = &by_seed;
   if (sizes.size() < 2) return false;
-  constexpr std::size_t looked_at = 2;
+  constexpr std::size_t looked_at = 2, few = 4;
   std::size_t looked = 0;
   for (auto coarser = std::next(sizes.begin()); coarser != sizes.end() && looked < looked_at; ++coarser, ++looked) {
     std::vector<double> moves;
@@ -154,7 +155,7 @@ bool is_chance(const std::map<Size, BySeed>& values, const Size& finest, bool st
         moves.push_back(value - before->second);
     const std::optional<double> half = half_interval(moves);
     const auto [least, most] = std::minmax_element(moves.begin(), moves.end());
-    if (!half || *least >= 0 || *most <= 0) return false;
+    if (!half || (moves.size() < few && (*least >= 0 || *most <= 0))) return false;
     if (std::abs(std::accumulate(moves.begin(), moves.end(), 0.0)) > *half * static_cast<double>(moves.size()))
       return false;
   }

@@ -199,6 +199,15 @@ double Evidence::repeats_after() const {
   return soonest;
 }
 
+bool Evidence::is_drawn() const {
+  const std::function<bool(const Json&)> holds = [&](const Json& value) {
+    return value.is_structured() &&
+           ((value.is_object() && value.contains("psd")) || std::any_of(value.begin(), value.end(), holds));
+  };
+  const Json& study = results().study;
+  return study.is_object() && holds(study.value("scene", Json::object()));
+}
+
 double Evidence::resolution(const std::string& name, const Point& point, bool by_steps) const {
   const MeasureInfo* info = measure_info(name);
   if (!info || !point.finest) return 0;
@@ -444,6 +453,7 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     if (limits[k])
       out[k].estimate =
           estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
+  const bool draws = is_drawn();
   for (std::size_t k = 0; k < out.size(); ++k) {
     if (!out[k].estimate) continue;
     Estimate& one = *out[k].estimate;
@@ -458,6 +468,7 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
                    std::any_of(out[k].cases.begin(), out[k].cases.end(), [&](const CaseRecord* record) {
                      return study_.elements(*record).value_or(1) != out[k].finest->second;
                    });
+    one.one_draw = draws && one.seeds == 1 && !one.sampling && one.value != 0;
     // What nothing refines and nothing draws is known as it is.
     if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;
   }

@@ -29,6 +29,7 @@ struct Estimate {
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
   bool one_mesh = false;             ///< of several that were asked one alone has a value
   bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
+  bool one_draw = false;             ///< of a random load, without an interval of its own: what others say is not known
   double step_doubt = 1;             ///< where the step is not settled: so many times `step` may be left to the limit
   double mesh_doubt = 1;             ///< likewise of the mesh
   std::optional<double> order;       ///< in the step
@@ -148,6 +149,8 @@ class Evidence {
   double window() const;
   /// Periods of each orbit that exponents are means over; 0 of kinds without orbits.
   double kept_periods() const;
+  /// Whether a load of the scene is drawn from a spectrum.
+  bool is_drawn() const;
   /// s after which the random loads of the scene say the same again, the soonest; ∞ of none.
   double repeats_after() const;
 

@@ -7,6 +7,7 @@
 
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/lines.hpp"
+#include "runners/asks/pairs.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
@@ -28,19 +29,42 @@ struct Order {
   std::vector<std::vector<std::size_t>> groups;
 };
 
-/// Lines by falling value, cut where all intervals before lie above all intervals after: a wide one may reach beyond
-/// its neighbours. What has no interval is told from nothing.
+/// Whether two intervals touch, or may where one is not settled.
+bool touch(const Estimate& higher, const Estimate& lower) {
+  return !higher.has_interval() || !lower.has_interval() || higher.least() <= lower.most();
+}
+
+/// Whether two lines are told apart by their difference at equal steps, meshes and draws, in which cancels what moves
+/// both alike: `a` is above `b`.
+bool differs(const Line& a, const Line& b) {
+  if (!a.estimate().has_interval() || !b.estimate().has_interval()) return false;
+  const std::optional<Pair> pair = pair_of(b.point, a.point);
+  return pair && !pair->least && pair->u_most && pair->difference > *pair->u_most;
+}
+
+/// Lines by falling value, cut where all before are above all after, by their intervals or their differences: one may
+/// reach beyond its neighbours. What has no interval is told from nothing.
 std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& lines) {
+  constexpr std::size_t most_paired = 64;
   std::vector<double> highest_from(lines.size() + 1, -INFINITY);
   for (std::size_t k = lines.size(); k-- > 0;)
     highest_from[k] =
         std::max(highest_from[k + 1], lines[k]->estimate().has_interval() ? lines[k]->estimate().most() : INFINITY);
   std::vector<std::vector<std::size_t>> groups;
-  double lowest = INFINITY;
+  std::size_t reach = 0;  // the last line that one before is not above
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (k == 0 || lowest > highest_from[k]) groups.emplace_back();
+    if (k == 0 || reach < k) groups.emplace_back();
     groups.back().push_back(k);
-    lowest = std::min(lowest, lines[k]->estimate().has_interval() ? lines[k]->estimate().least() : -INFINITY);
+    const double least = lines[k]->estimate().has_interval() ? lines[k]->estimate().least() : -INFINITY;
+    const auto behind = highest_from.begin() + static_cast<std::ptrdiff_t>(k) + 1;
+    auto last = static_cast<std::size_t>(
+        std::partition_point(behind, highest_from.end() - 1, [&](double most) { return most >= least; }) -
+        highest_from.begin() - 1);
+    const auto is_above = [&](const Line& other) {
+      return !touch(lines[k]->estimate(), other.estimate()) || differs(*lines[k], other);
+    };
+    while (last > std::max(reach, k) && lines.size() <= most_paired && is_above(*lines[last])) --last;
+    reach = std::max(reach, last);
   }
   return groups;
 }
@@ -141,10 +165,17 @@ class Ranking {
           {{why, ""}, {first.level.empty() ? "" : ", with " + first.level, ""}});
       return out;
     }
-    std::string must;
-    for (std::size_t most = 3; most > 0; --most)
-      if (must = capitalised_order(first, most); fits(must)) break;
-    out.sentence = in_thirty_words(must, rest);
+    // What holds over all combinations is worth more than the third place of one.
+    const auto says_all = [&](const std::string& sentence) {
+      return orders_.size() == 1 || std::any_of(rest.back().begin(), rest.back().end(), [&](const std::string& one) {
+               return !one.empty() && sentence.ends_with(one + ".");
+             });
+    };
+    for (std::size_t most = 3; most > 0; --most) {
+      const std::string must = capitalised_order(first, most);
+      out.sentence = in_thirty_words(must, rest);
+      if (fits(must) && says_all(out.sentence)) break;
+    }
     return out;
   }
 
@@ -222,7 +253,7 @@ class Ranking {
       const Estimate& one = order.lines[other]->estimate();
       if (!one.has_interval()) return order.names[other] + " has no interval";
       if (other != k && own.low() <= one.high() && one.low() <= own.high())
-        return "its interval touches that of a neighbour";
+        return "its difference from a neighbour is not told from zero";
       if (other != k && one.doubted() && moving.empty()) moving = "a neighbour " + one.unsettled();
     }
     return own.doubted() ? "it " + own.unsettled() : moving.empty() ? "a neighbour has no interval" : moving;
@@ -240,6 +271,9 @@ class Ranking {
           row.reason = without_value(order);
         else if (row.reason.empty() && group.size() > 1)
           row.reason = why_together(order, group, k);
+        else if (row.reason.empty() && k + 1 < order.lines.size() &&
+                 touch(order.lines[k]->estimate(), order.lines[k + 1]->estimate()))
+          row.reason = "by its difference from the next at equal steps and seeds";
         out.rows.push_back(std::move(row));
       }
       place += group.size();

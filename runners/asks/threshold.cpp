@@ -123,7 +123,7 @@ void find_change(Series& series, const Condition& condition) {
 
 class Threshold {
  public:
-  Threshold(const Ask& ask, const Evidence& evidence) : along_(ask.text("along")) {
+  Threshold(const Ask& ask, const Evidence& evidence) : study_(evidence.study()), along_(ask.text("along")) {
     condition_ = {ask.real("is"), ask.real("below"), ask.real("above")};
     const Cases cases = evidence.cases(ask);
     std::vector<std::string> columns = evidence.choices(cases, ask.subject(), {along_}), others = columns;
@@ -225,8 +225,8 @@ class Threshold {
     const auto& [first, begin] = of.between.front();
     const auto& [end, last] = of.between.back();
     return fmt::format("{} in one range of {}, from {}–{} to {}–{}",
-                       of.becomes ? what : condition_.text(lines_, "not "), axis_words(), short_number(first),
-                       short_number(begin), short_number(end), x_text(last));
+                       of.becomes ? what : condition_.text(lines_, "not "), axis_words(), number_text(first),
+                       number_text(begin), number_text(end), x_text(last));
   }
 
   /// "; always with penalty; not told with 3 of 6": what those without a threshold are.
@@ -326,8 +326,9 @@ class Threshold {
     return fmt::format("{} {} {}", is_plural(lines_.words.words) ? "are" : "is", which, lines_.given(*condition_.is));
   }
 
+  std::string number_text(double x) const { return study_.number_words(along_, x); }
   std::string x_text(double x) const {
-    const std::string number = short_number(x);
+    const std::string number = number_text(x);
     if (!unit_.empty()) return number + " " + unit_;
     return is_refinement(along_) ? number + " " + along_ : number;
   }
@@ -386,6 +387,7 @@ class Threshold {
             {"between", between}};
   }
 
+  const Choices& study_;
   std::string along_, unit_, axis_words_;
   Condition condition_;
   Lines lines_;

@@ -119,11 +119,12 @@ std::string Choices::own_words(const std::string& column, const std::string& val
   const std::string role = axis_role(column);
   if (column == role && is_method_role(role)) return method_words(role, value);
   const auto number = number_in(value);
-  const std::string shown = number ? short_number(*number) : formula_words(value);
+  const std::string shown = number ? number_words(column, *number) : formula_words(value);
   if (role != column) {
     const std::string name = last_part(column);
     if (const std::string letter = symbol(name); !letter.empty() && number)
-      return letter + " = " + fraction_text(*number) + unit_after(column);
+      return letter + " = " + (fraction_text(*number) == short_number(*number) ? shown : fraction_text(*number)) +
+             unit_after(column);
     if (is_table(value)) return table_words(column, value);
     // "implicit evaluation", "second-order start"; of a mass matrix the value says it: "P1".
     if (!number && value != "true" && value != "false")

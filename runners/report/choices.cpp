@@ -18,6 +18,16 @@ bool is_among(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();
 }
 
+/// So many significant digits, `least` at least, that these numbers have texts of their own.
+int digits_of(const std::vector<double>& ascending, int least) {
+  constexpr int most = 17;
+  for (int digits = least; digits < most; ++digits) {
+    const auto alike = [&](double a, double b) { return short_number(a, digits) == short_number(b, digits); };
+    if (std::adjacent_find(ascending.begin(), ascending.end(), alike) == ascending.end()) return digits;
+  }
+  return most;
+}
+
 }  // namespace
 
 std::string axis_words(const Cell& cell) {
@@ -64,6 +74,7 @@ Choices::Choices(const StudyResults& results) : results_(results) {
       if (!is_reference(record)) methods.insert(at);
     }
     own.numbers = {numbers.begin(), numbers.end()};
+    own.digits = digits_of(own.numbers, fewest_digits);
     if (column == "step" || column == "steps_per_period") steps_ = column;
     if (methods.size() < 2) continue;
     varying_.push_back(column);
@@ -184,6 +195,11 @@ const std::string& Choices::unit_of(const std::string& column) const {
 std::string Choices::unit_after(const std::string& column) const {
   const std::string& unit = unit_of(column);
   return unit.empty() ? "" : " " + unit;
+}
+
+std::string Choices::number_words(const std::string& column, double value) const {
+  const Values* own = known(column);
+  return short_number(value, own ? own->digits : fewest_digits);
 }
 
 const std::vector<double>& Choices::numbers_of(const std::string& column) const {

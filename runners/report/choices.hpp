@@ -86,6 +86,8 @@ class Choices {
   std::string method_words(const std::string& role, const std::string& name) const;
   /// The unit of a column as the study keeps it; "" for words, ratios and counts.
   const std::string& unit_of(const std::string& column) const;
+  /// A number of a column with as many digits as tell its levels apart, four at least: "0.01", "0.010002".
+  std::string number_words(const std::string& column, double value) const;
   /// Numbers of a column over all cases, ascending, each once.
   const std::vector<double>& numbers_of(const std::string& column) const;
 
@@ -128,6 +130,7 @@ class Choices {
   std::string colour(const CaseRecord& record) const;
 
  private:
+  static constexpr int fewest_digits = 4;
   /// What cases have in a column.
   struct Values {
     std::vector<std::string> texts;  // each once
@@ -135,6 +138,7 @@ class Choices {
     std::string role;                // the column itself where it is of none
     std::vector<std::size_t> at;     // of each case, its place among the texts
     std::vector<double> numbers;     // ascending, each once
+    int digits = fewest_digits;      // that tell these apart
     std::string unit;
   };
   const Values* known(const std::string& column) const;
