@@ -61,7 +61,7 @@ bool bends(const SceneSpec& scene, const Place& place, const std::string& pointe
 std::vector<PlaceRow> round_tangents(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
                                      std::size_t number) {
   std::vector<PlaceRow> rows{axis_row(scene, space, stop, number, 0), axis_row(scene, space, stop, number, 1)};
-  if (!stop.tangent || (!stop.tangent->given() && stop.friction)) return rows;
+  if (!stop.tangent || !stop.tangent->given()) return rows;
   const std::string pointer = tangent_pointer(stop, number, *stop.tangent) + "/slope_radius";
   const bool slopes = bends(scene, stop.at, pointer) && (!stop.to || bends(scene, *stop.to, pointer));
   if (!(stop.tangent->slope_radius > 0) || !slopes)
@@ -144,9 +144,17 @@ std::vector<PlaceRow> surface_rows(const SceneSpec& scene, const FiniteElementSp
 }
 
 void check_surfaces(const SceneSpec& scene, const FiniteElementSpace& space) {
-  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
-    if (const auto rows = surface_rows(scene, space, scene.stops.named[i], i); !rows.empty())
-      check_across(scene.stops.named[i], i, rows, stop_row(scene, space, scene.stops.named[i], i));
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
+    const NamedStop& stop = scene.stops.named[i];
+    // One effort stands for both sides: the difference of what they press with.
+    if (!stop.side && (stop.tangent || stop.friction) && stop.lower && stop.upper && *stop.lower > *stop.upper)
+      throw InputError(fmt::format("/scene/stops/{}", i),
+                       fmt::format("stop {} presses from both sides, and rubs with both: its lower bound, {:g} m, is "
+                                   "above its upper one, {:g} m; give each side as a stop of its own",
+                                   stop.name, *stop.lower, *stop.upper));
+    if (const auto rows = surface_rows(scene, space, stop, i); !rows.empty())
+      check_across(stop, i, rows, stop_row(scene, space, stop, i));
+  }
 }
 
 SparseRows pushed_rows_of(const SceneSpec& scene, const SemiDiscrete& problem) {

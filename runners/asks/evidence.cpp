@@ -29,6 +29,11 @@ bool same_level(const Json& asked, const Json& own) {
   return asked.is_number() && own.is_number() ? asked.get<double>() == own.get<double>() : asked == own;
 }
 
+bool is_drawn(const Json& scene) {
+  return scene.is_structured() &&
+         ((scene.is_object() && scene.contains("psd")) || std::any_of(scene.begin(), scene.end(), is_drawn));
+}
+
 std::string ending_key(const CaseRecord& record) {
   std::string key = record.partial ? "still running" : word(record.status);
   for (const Said& one : record.reasons) key += one.without_numbers();
@@ -197,15 +202,6 @@ double Evidence::repeats_after() const {
   };
   if (const Json& study = results().study; study.is_object()) look(study.value("scene", Json::object()));
   return soonest;
-}
-
-bool Evidence::is_drawn() const {
-  const std::function<bool(const Json&)> holds = [&](const Json& value) {
-    return value.is_structured() &&
-           ((value.is_object() && value.contains("psd")) || std::any_of(value.begin(), value.end(), holds));
-  };
-  const Json& study = results().study;
-  return study.is_object() && holds(study.value("scene", Json::object()));
 }
 
 double Evidence::resolution(const std::string& name, const Point& point, bool by_steps) const {
@@ -453,7 +449,7 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     if (limits[k])
       out[k].estimate =
           estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
-  const bool draws = is_drawn();
+  const bool draws = results().study.is_object() && is_drawn(results().study.value("scene", Json::object()));
   for (std::size_t k = 0; k < out.size(); ++k) {
     if (!out[k].estimate) continue;
     Estimate& one = *out[k].estimate;

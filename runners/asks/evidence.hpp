@@ -149,8 +149,6 @@ class Evidence {
   double window() const;
   /// Periods of each orbit that exponents are means over; 0 of kinds without orbits.
   double kept_periods() const;
-  /// Whether a load of the scene is drawn from a spectrum.
-  bool is_drawn() const;
   /// s after which the random loads of the scene say the same again, the soonest; ∞ of none.
   double repeats_after() const;
 
@@ -170,6 +168,9 @@ class Evidence {
 
   const Choices& study_;
 };
+
+/// Whether a load of a scene is drawn from a spectrum.
+bool is_drawn(const Json& scene);
 
 /// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.
 bool same_level(const Json& asked, const Json& own);

@@ -136,7 +136,7 @@ const Verb& limit_verb() {
        keys::quiet(keys::optional(keys::real("above", "", keys::any, std::nullopt, "In the measure's unit.")))},
       "",
       check_limit,
-      doubt_of_one_step,
+      doubt_of_values,
       answer_limit};
   return verb;
 }

@@ -370,11 +370,20 @@ Planned planned(const Study& study) {
       if (axis == "elements" || axis == "modes") meshes.insert(axis + value.dump());
       if (axis == seed_axis) seeds.insert(value.dump());
     }
-  return {steps.size(), meshes.size(), seeds.size()};
+  const Json window = study.resolved.value("window", Json());
+  const bool parts = window.is_object() && window.contains("parts") && window["parts"].is_number();
+  return {steps.size(), meshes.size(), seeds.size(),
+          !parts && seeds.size() < 2 && is_drawn(study.resolved.value("scene", Json::object()))};
 }
 
 std::string doubt_of_one_step(const Ask&, const Study& study) {
   return planned(study).steps == 1 ? "one step only: no interval, so no yes and no no" : "";
+}
+
+std::string doubt_of_values(const Ask& ask, const Study& study) {
+  if (std::string one_step = doubt_of_one_step(ask, study); !one_step.empty()) return one_step;
+  return planned(study).one_draw ? "one seed of a random load: what other draws leave is not known, so no yes and no no"
+                                 : "";
 }
 
 Json bars(const Lines& lines, const std::vector<double>& at) {

@@ -92,10 +92,13 @@ void refuse_seeds(const Ask& ask, const std::string& key, const std::string& why
 /// Steps, meshes and seeds of a study, as they were planned.
 struct Planned {
   std::size_t steps = 0, meshes = 0, seeds = 0;
+  bool one_draw = false;  ///< of a random load, without parts of a window
 };
 Planned planned(const Study& study);
 /// "One step only: no interval, and no verdict."; "".
 std::string doubt_of_one_step(const Ask& ask, const Study& study);
+/// The same of values, which one draw leaves open too.
+std::string doubt_of_values(const Ask& ask, const Study& study);
 
 /// A figure of bars with intervals, one for each line; `at`: a line across, in the unit of the rows.
 Json bars(const Lines& lines, const std::vector<double>& at = {});

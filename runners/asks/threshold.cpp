@@ -422,7 +422,7 @@ const Verb& threshold_verb() {
        keys::quiet(keys::optional(keys::real("above", "", keys::any, std::nullopt, "It is above this value.")))},
       "",
       check_threshold,
-      doubt_of_one_step,
+      doubt_of_values,
       [](const Ask& ask, const Evidence& evidence) { return Threshold(ask, evidence).answer(); }};
   return verb;
 }

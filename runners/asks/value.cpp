@@ -80,8 +80,10 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     const Line& first =
         **std::find_if(known.begin(), known.end(), [](const Line* l) { return !why_unsure(*l).empty(); });
     out.reason = why_unsure(first);
-    const std::string doubt = !first.estimate().unknown().empty() ? "; what the step leaves open is not known"
-                              : known.size() == 1                 ? "; it " + out.reason
+    const Estimate& one = first.estimate();
+    const std::string doubt = one.has_step && !one.step ? "; what the step leaves open is not known"
+                              : !one.unknown().empty()  ? "; " + one.unknown()
+                              : known.size() == 1       ? "; it " + out.reason
                               : without == known.size()
                                   ? "; each " + out.reason
                                   : fmt::format("; in {} of {} it {}", without, known.size(), out.reason);
@@ -96,7 +98,9 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
 
 std::string doubt_value(const Ask&, const Study& study) {
   const Planned plan = planned(study);
-  return plan.steps == 1 ? "one step only: its interval holds nothing of the step" : "";
+  return plan.steps == 1 ? "one step only: its interval holds nothing of the step"
+         : plan.one_draw ? "one seed of a random load: its interval holds nothing of other draws"
+                         : "";
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ struct Watched {
         contacts(marcher, recorder),
         struck(marcher),
         outputs(study_case, marcher, contacts),
-        means(study_case.settings, marcher, audit, &contacts),
+        means(study_case.settings, marcher, audit, steps, &contacts),
         forces(study_case.settings, marcher),
         orbits(marcher, asked_outputs(study_case).window, steps),
         snapshots(study_case.scene, marcher, steps, snapshots_asked(study_case.settings)),

@@ -11,12 +11,13 @@
 
 namespace ricochet {
 
-WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, const StopContacts* contacts)
+WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, long long steps,
+                         const StopContacts* contacts)
     : audit_(audit), contacts_(contacts && contacts->merges() ? contacts : nullptr) {
   if (!has_window(settings)) return;
   const Json& window = settings.at("window");
   from_ = window.at("from").get<double>();
-  to_ = window.at("to").get<double>();
+  to_ = std::min(window.at("to").get<double>(), static_cast<double>(steps) * marcher.program().h);
   if (window.contains("parts") && window["parts"].is_number()) parts_ = window["parts"].get<int>();
   constexpr double rounding = 1e-6;
   too_many_ = parts_ > 0 && (to_ - from_) / marcher.program().h < (1 - rounding) * parts_;

@@ -24,8 +24,9 @@ class WindowMeans final : public StepObserver {
 
   /// `settings` are those of a trajectory, with or without a window in parts; without, it has nothing to look at. What
   /// stops of a compliant law store is asked for at every step. The audit looks at a step before it. Momentum and
-  /// impacts of clearances are those of `contacts`.
-  WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, const StopContacts* contacts = nullptr);
+  /// impacts of clearances are those of `contacts`. The window ends at the last of all `steps` at the latest.
+  WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, long long steps,
+              const StopContacts* contacts = nullptr);
 
   bool asked() const { return parts_ > 0; }
   void stage_solved(const Marcher&, const StageView&) override {}

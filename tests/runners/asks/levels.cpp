@@ -179,6 +179,28 @@ TEST_CASE("asks: a step that moves by little casts no doubt on the mesh, and wha
   CHECK(much.reason == "it still rises with the step");
 }
 
+TEST_CASE("asks: one draw of a random load tells no value, two or an interval of its own do") {
+  Made made;
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.scatter = made.error = 0.01;
+  const Json ask = {{"limit", "impulse"}, {"below", 2}};
+  const auto told = [&](const std::vector<std::string>& seeds, bool psd, bool parts) {
+    made.choices = {{"mass", {"m0"}}, {seed_axis, seeds}};
+    StudyResults results = made.results();
+    if (psd) results.study["scene"]["load"] = Json::array({{{"force", {{"psd", {{"formula", "1"}}}}}}});
+    if (parts)
+      for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.02);
+    return answer_of(results, ask);
+  };
+  const Answered one = told({"1"}, true, false);
+  INFO(one.sentence);
+  CHECK(one.passes == Verdict::open);
+  CHECK(one.reason == "one seed: what other draws leave is not known");
+  CHECK(told({"1"}, false, false).passes == Verdict::yes);
+  CHECK(told({"1"}, true, true).passes == Verdict::yes);
+  CHECK(told({"1", "2"}, true, false).passes == Verdict::yes);
+}
+
 TEST_CASE("asks: what draws move by chance from step to step is no trend, what moves them all is") {
   Made made;
   made.choices = {{"mass", {"m0"}}, {seed_axis, {"1", "2", "3", "4", "5", "6", "7", "8"}}};

@@ -90,6 +90,19 @@ TEST_CASE("window means: parts that are no whole number of steps weigh by their 
         record.notes.end());
 }
 
+TEST_CASE("window means: a window to the end of the run ends with its last whole step") {
+  Json text = bouncing_study();
+  const auto rate = [&](double step) {
+    text["step"] = step;
+    const CaseRecord record = CaseRuns().first_of(text);
+    const double end = step * std::floor(64 / step);
+    CHECK(measure(record, "window_impact_rate").value_or(0) * end ==
+          Approx(measure(record, "impacts").value()).epsilon(1e-10));
+  };
+  // What is left of the run is less than half a step, or more.
+  for (const double step : {0.01, 64 / 6400.3, 64 / 6400.7}) rate(step);
+}
+
 TEST_CASE("window means: twice the window is an interval narrower by about the root of two") {
   // Chaotic (ζ = 0, e = 0.8): parts are draws, so the ratio has a spread of its own of some 20 % for 64 parts.
   Json text = bouncing_study();
