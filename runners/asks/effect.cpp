@@ -139,7 +139,7 @@ class EffectSpeaker {
     for (const std::size_t k : order) add_row(out, told_[k]);
     for (const Line& line : lines_.all) {
       VerdictRow row = lines_.row(line);
-      row.verdict = "value";
+      row.verdict = line.known() ? "value" : "no value";
       out.rows.push_back(std::move(row));
     }
     for (const std::size_t k : decides_) {
