@@ -291,8 +291,17 @@ void widen_by(Estimate& own, const Estimate& other) {
 /// Narrows `own` to what another scheme with the same limit tells: as far as both values lie apart, and what is left of
 /// the other. One that moves, or is known by two sizes alone, tells nothing.
 void narrow_by(Estimate& own, const Estimate& other) {
-  if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty() || other.two) return;
+  if (!other.step || other.grows || !other.motion.empty() || other.two) return;
   const double told = std::abs(own.value - other.value) + other.step_doubt * *other.step;
+  // What seems to grow without bound has a limit, which the other knows.
+  if (own.grows) {
+    own.grows = false;
+    own.motion.clear();
+    own.step = told;
+    own.step_doubt = 1;
+    return;
+  }
+  if (!own.step) return;
   if (told >= own.step_doubt * *own.step) return;
   own.step_doubt = std::max(1.0, told / *own.step);
   own.step = std::min(*own.step, told);

@@ -917,6 +917,12 @@ TEST_CASE("asks: schemes of a compliant law have one limit, and intervals that e
   CHECK((*row.low < 1 && *row.high > 1));
   CHECK(*row.high - *row.low < *before.high - *before.low);
   CHECK(answer_of(rough, {{"limit", "impulse"}, {"below", 1.25}, {"where", {{"time", "t1"}}}}).passes == Verdict::yes);
+  // Nor does one that seems to grow without bound.
+  for (CaseRecord& record : rough.cases)
+    if (record.axes[1].second == "t1") record.measures[0].second = 1e-5 / record.axes[2].second.get<double>();
+  const VerdictRow bounded = answer_of(rough, of_rough).rows.front();
+  CHECK(bounded.verdict == "known");
+  CHECK((*bounded.low < 1 && *bounded.high > 1));
   // Two that disagree know nothing of a third.
   StudyResults apart = synthetic::full_factorial(
       {{"mass", {"m0"}}, {"time", {"t0", "t1", "t2"}}}, {8e-3, 4e-3, 2e-3, 1e-3},
