@@ -173,7 +173,9 @@ class Enough {
       if (!one.motion.empty() || one.vanishes) {
         out.known = !one.vanishes;
         out.why = one.vanishes ? "it falls to zero with the step" : "it " + one.motion;
-      } else
+      } else if (!one.order && line.point.errors == Errors::saw_toothed)
+        out.why = "it falls with no order in the step";
+      else
         out.step = two_digits_below(line.point.finest->first * std::pow(of_step / step, 1 / order));
     }
     return out;

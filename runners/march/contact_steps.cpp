@@ -18,7 +18,9 @@ std::optional<ContactSteps> contact_steps(const StudyCase& study_case, const Mar
   double peak = 0;
   for (int j = 0; j < problem.points(); ++j)
     for (const StopSide side : {StopSide::lower, StopSide::upper})
-      if (const double force = recorder.totals(0, j, side).peak_force; force > peak) hardest = j, peak = force;
+      // What rests on its stop is not turned back.
+      if (const StopTotals& one = recorder.totals(0, j, side); one.impacts > 0 && one.peak_force > peak)
+        hardest = j, peak = one.peak_force;
   if (hardest < 0) return std::nullopt;
   const auto law = make_law(study_case, registry);
   Parameters parameters = study_case.contact.parameters;

@@ -13,7 +13,7 @@ struct ContactSteps {
   double steps = 0;      ///< of the march in that time
 };
 
-/// Of a march that is over, `depth` (m) the deepest that a point came. Nothing where no stop was touched, for rigid
+/// Of a march that is over, `depth` (m) the deepest that a point came. Nothing where no stop was hit, for rigid
 /// laws and those without an energy, and where contact_spring() knows no such mode.
 std::optional<ContactSteps> contact_steps(const StudyCase& study_case, const Marcher& marcher,
                                           const ImpactRecorder& recorder, double depth, const Registry& registry);
