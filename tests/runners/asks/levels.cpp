@@ -159,6 +159,24 @@ TEST_CASE("asks: two sizes decide three times what first order leaves of them") 
   CHECK(below({4e-3, 4e-4}, 1.25).passes == Verdict::yes);
 }
 
+TEST_CASE("asks: runs that end at times of their own are told, those that end together are not") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.steps = {7e-4, 3.5e-4, 1.75e-4};
+  StudyResults results = made.results();
+  const auto told = [&](double duration) {
+    for (CaseRecord& record : results.cases)
+      record.steps = static_cast<long long>(duration / record.axes[1].second.get<double>() * (1 + 1e-12));
+    const Choices choices(results);
+    return Evidence(choices).warnings();
+  };
+  CHECK(told(0.7).empty());
+  REQUIRE(told(0.6001).size() == 1);
+  CHECK(told(0.6001).front() ==
+        "Steps that do not divide the duration end the runs at 0.5999 to 0.600075 s: values at the end are of these.");
+}
+
 TEST_CASE("asks: a step that moves by little casts no doubt on the mesh, and what leaves more open is told") {
   const std::vector<double> steps = {4e-3, 2e-3, 1e-3, 5e-4};
   const auto kept = [&](double of_step) {
