@@ -27,6 +27,7 @@ std::optional<double> half_interval(const std::vector<double>& draws) {
 std::string Estimate::unknown() const {
   if (grows) return "";
   if (has_step && !step) return "one step: what it leaves open is not known";
+  if (one_instant) return "its impact falls at one instant with each step, which hides what the step leaves";
   if (one_draw) return "one seed: what other draws leave is not known";
   return one_mesh ? "one mesh alone has a value" : "";
 }
@@ -134,7 +135,8 @@ Doubt doubt_of(const std::optional<Limit>& limit, const char* what, const char* 
     return {Doubt::Kind::two, of_two / (limit->ratio - 1), std::string("is known by two ") + several + " alone"};
   if (limit->status == LimitStatus::settles && !limit->order)
     return {Doubt::Kind::three, *limit->uncertainty < limit->range ? of_three : 1,
-            std::string("is known by three ") + several + " alone"};
+            limit->sizes > 3 ? std::string("has no confirmed order in the ") + what
+                             : std::string("is known by three ") + several + " alone"};
   return {};
 }
 

@@ -259,6 +259,20 @@ std::vector<Point> Evidence::points(const std::string& name, const Cases& cases,
 
 namespace {
 
+/// Whether each case has one rigid impact, all at one instant after the start. A rigid law sees it at the end of a
+/// step; steps that are halves of each other may all end there.
+bool has_one_instant(const Point& point) {
+  constexpr double rounding = 1e-9;
+  std::optional<double> at;
+  for (const CaseRecord* one : point.behind) {
+    const auto instant = measure(*one, "first_impact");
+    if (measure(*one, "impacts") != 1.0 || !instant || *instant == 0) return false;
+    if (at && std::abs(*instant - *at) > rounding * *at) return false;
+    at = instant;
+  }
+  return at && point.errors == Errors::saw_toothed;
+}
+
 /// A choice of how the same problem is marched: it moves no limit of a compliant law.
 bool is_of_scheme(const std::string& column) {
   return axis_role(column) == "time" || column == "contact.evaluation";
@@ -473,6 +487,7 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
                    std::any_of(out[k].cases.begin(), out[k].cases.end(), [&](const CaseRecord* record) {
                      return study_.elements(*record).value_or(1) != out[k].finest->second;
                    });
+    one.one_instant = one.steps > 1 && one.step && has_one_instant(out[k]);
     one.one_draw = draws && one.seeds == 1 && !one.sampling && one.value != 0;
     // What nothing refines and nothing draws is known as it is.
     if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;

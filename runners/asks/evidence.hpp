@@ -29,6 +29,7 @@ struct Estimate {
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
   bool one_mesh = false;             ///< of several that were asked one alone has a value
   bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
+  bool one_instant = false;          ///< each step has its one rigid impact at the same instant: none tells its error
   bool one_draw = false;             ///< of a random load, without an interval of its own: what others say is not known
   double step_doubt = 1;             ///< where the step is not settled: so many times `step` may be left to the limit
   double mesh_doubt = 1;             ///< likewise of the mesh

@@ -93,7 +93,9 @@ Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::
     for (const SizedValue& one : values)
       u = std::max(u, safety * std::abs(one.value - out.value) * values.back().size / one.size);
   }
-  if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
+  // Orders of saw teeth agree by chance too.
+  if (const std::size_t n = values.size();
+      errors == Errors::smooth && n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
     if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {
       out.order = order;

@@ -67,8 +67,8 @@ inline constexpr double lowest_order = 0.5;
 /// u is at least 1.25 |d_last|, and by how much a later value missed the interval that three coarser sizes, or more,
 /// had told. Where d_last has another sign than the difference before it, or p > 4.5, it is small by chance: u is at
 /// least what first order leaves of that, 1.25 |d_before| h₃/(h₁ − h₂). Where errors have a saw tooth it always is, and
-/// at least the range of the last three values. Of two sizes u is |d_last|, of what moves 2 |d_last|, of what wanders
-/// that range.
+/// at least the range of the last three values, and no order is confirmed. Of two sizes u is |d_last|, of what moves 2
+/// |d_last|, of what wanders that range.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {},
                               Errors errors = Errors::smooth);
 

@@ -280,3 +280,13 @@ TEST_CASE("two slopes that agree before the finest errors may be chance, and are
   CHECK_FALSE(order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}}, 0)->in_passing);
   CHECK_FALSE(order_run(errors_of(2, 1e-3, 10), 0)->in_passing);
 }
+
+TEST_CASE("orders that agree confirm no limit of what errs by saw teeth") {
+  const std::vector<SizedValue> values = {{16, 1.4}, {8, 1.2}, {4, 1.1}, {2, 1.05}, {1, 1.025}};
+  const auto smooth = limit_of(values, 0, {}, Errors::smooth), teeth = limit_of(values, 0, {}, Errors::saw_toothed);
+  REQUIRE((smooth && teeth));
+  CHECK(smooth->order);
+  CHECK(*smooth->uncertainty < smooth->range);
+  CHECK_FALSE(teeth->order);
+  CHECK(*teeth->uncertainty >= teeth->range);
+}

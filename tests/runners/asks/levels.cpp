@@ -177,6 +177,25 @@ TEST_CASE("asks: runs that end at times of their own are told, those that end to
         "Steps that do not divide the duration end the runs at 0.5999 to 0.600075 s: values at the end are of these.");
 }
 
+TEST_CASE("asks: one rigid impact at the same instant with each step tells nothing of the step") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-4;
+  const auto passes = [&](double apart, bool springs) {
+    StudyResults results = made.results();
+    for (std::size_t k = 0; k < results.cases.size(); ++k) {
+      results.cases[k].measures.emplace_back("impacts", 1.0);
+      results.cases[k].measures.emplace_back("first_impact", 0.496 + apart * static_cast<double>(k));
+      if (springs) results.cases[k].measures.emplace_back("contact_steps", 40.0);
+    }
+    return answer_of(results, {{"limit", "impulse"}, {"below", 1.1}}).passes;
+  };
+  CHECK(passes(0, false) == Verdict::open);
+  CHECK(passes(-1e-5, false) == Verdict::yes);
+  CHECK(passes(0, true) == Verdict::yes);
+}
+
 TEST_CASE("asks: a step that moves by little casts no doubt on the mesh, and what leaves more open is told") {
   const std::vector<double> steps = {4e-3, 2e-3, 1e-3, 5e-4};
   const auto kept = [&](double of_step) {
