@@ -582,14 +582,16 @@ std::string energy_made(const Choices& study) {
 std::string ends_apart(const Choices& study) {
   if (!contains(study.results().columns, "step")) return "";
   constexpr double rounding = 1e-9;
-  double first = INFINITY, last = 0;
+  double first = INFINITY, last = 0, coarsest = 0;
   for (const CaseRecord& record : study.results().cases) {
     const auto step = study.step(record);
     if (is_reference(record) || record.status != Status::done || !step || record.steps == 0) continue;
     first = std::min(first, *step * static_cast<double>(record.steps));
     last = std::max(last, *step * static_cast<double>(record.steps));
+    coarsest = std::max(coarsest, *step);
   }
-  if (!(last - first > rounding * last)) return "";
+  // What is left of a duration is less than a step.
+  if (!(last - first > rounding * last) || last - first > coarsest) return "";
   constexpr int digits = 6;
   return fmt::format(
       "Steps that do not divide the duration end the runs at {} to {} s: values at the end are of these.",
@@ -600,10 +602,10 @@ std::string ends_apart(const Choices& study) {
 
 std::vector<std::string> Evidence::warnings() const {
   std::vector<std::string> out;
-  if (std::string apart = ends_apart(study_); !apart.empty()) out.push_back(std::move(apart));
   if (auto untouched = answers::say_untouched(study_)) out.push_back(untouched->text);
   for (const answers::Sentence& refused : answers::refused_references(study_)) out.push_back(refused.text);
   if (const std::string made = energy_made(study_); !made.empty()) out.push_back(made);
+  if (std::string apart = ends_apart(study_); !apart.empty()) out.push_back(std::move(apart));
   return out;
 }
 
