@@ -72,6 +72,7 @@ struct Formula::Source {
   bool uses_x = false, uses_t = false;
   double constant = 0;
   std::function<double(double)> given;
+  std::optional<HarmonicTerm> harmonic;
 
   bool varies() const { return uses_x || uses_t; }
 
@@ -137,6 +138,13 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
                                           std::isnan(source_->constant) ? "no number (NaN)" : "an infinite value"));
 }
 
+Formula::Formula(const HarmonicTerm& term, const std::string& pointer) : source_(std::make_shared<Source>()) {
+  source_->text = fmt::format("({})*cos(({})*t + ({}))", term.amplitude, term.pulsation, term.phase);
+  source_->pointer = pointer;
+  source_->uses_t = true;
+  source_->harmonic = term;
+}
+
 Formula::Formula(std::function<double(double)> of_t, const std::string& text, const std::string& pointer)
     : source_(std::make_shared<Source>()) {
   source_->text = text;
@@ -167,6 +175,7 @@ Formula& Formula::operator=(const Formula& other) {
 double Formula::evaluated(double x, double t) const {
   if (!source_->varies()) return source_->constant;
   if (source_->given) return source_->given(t);
+  if (const auto& one = source_->harmonic) return one->amplitude * std::cos(one->pulsation * t + one->phase);
   if (!own_) own_ = source_->take();
   own_->x = x;
   own_->t = t;
@@ -226,6 +235,9 @@ const std::string& Formula::text() const {
 }
 bool Formula::is_written() const {
   return !source_->given;
+}
+const std::optional<HarmonicTerm>& Formula::harmonic() const {
+  return source_->harmonic;
 }
 
 double Formula::operations() const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ void require_expression(const std::string& text, const std::string& pointer);
                                   const std::string& pointer, std::vector<std::string> names,
                                   const std::string& names_in_words);
 
+/// a cos(Ωt + φ).
+struct HarmonicTerm {
+  double amplitude = 0, pulsation = 0, phase = 0;  ///< a; Ω, rad/s; φ, rad
+};
+
 /// A number or a formula in x (m) and t (s), as a study writes it: "0.04*x^2", "sin(pi*x)*cos(10*t)", pi and e defined.
 /// Throws InputError (with the pointer given) when the text does not parse, names an unknown variable, or a value is
 /// not finite. A copy costs next to nothing; copies may be evaluated by several threads at the same time, one may not.
@@ -32,6 +38,8 @@ class Formula {
   explicit Formula(double constant);
   /// `variables` is the subset of "xt" that may appear; or "f" (Hz), which stands in the place of t.
   Formula(const std::string& text, const std::string& pointer, const std::string& variables = "xt");
+  /// a cos(Ωt + φ), with the values of its text in digits.
+  Formula(const HarmonicTerm& term, const std::string& pointer);
   /// A function of t that is given otherwise: a table, a random load. `text` names it for people.
   Formula(std::function<double(double)> of_t, const std::string& text, const std::string& pointer);
   Formula(const Formula&);
@@ -57,6 +65,8 @@ class Formula {
   const std::string& text() const;
   /// Whether its text is what is evaluated; else that only names it.
   bool is_written() const;
+  /// Of a formula that was made of one; else none.
+  const std::optional<HarmonicTerm>& harmonic() const;
 
  private:
   struct Source;

@@ -98,6 +98,7 @@ std::optional<double> rate_of(const std::string& argument) {
 
 std::optional<double> pulsation_of(const Formula& formula) {
   if (!formula.is_written() || !formula.uses_t()) return std::nullopt;
+  if (const auto& one = formula.harmonic()) return std::abs(one->pulsation);
   const auto arguments = arguments_of_t(formula.text());
   std::optional<double> pulsation;
   if (!arguments) return std::nullopt;

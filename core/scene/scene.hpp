@@ -112,15 +112,10 @@ struct BeamSpec {
 
 /// One mass on a spring and a dashpot, m w'' + c w' + k w = F cos(ωt + ψ) + load(t) − m φ''. Its only point is the tip.
 struct OscillatorSpec {
-  struct Force {
-    double amplitude = 0;  ///< F, N
-    double pulsation = 0;  ///< ω, rad/s
-    double phase = 0;      ///< ψ, rad
-  };
   double mass = 1;       ///< m, kg
   double stiffness = 0;  ///< k, N/m; 0: a free mass
   double damping = 0;    ///< c, N s/m
-  Force force;
+  HarmonicTerm force;    ///< F cos(ωt + ψ), N
 };
 
 /// A bar in tension and compression, ρA w_tt = (EA (w + αw_t)_x)_x; its tip is the free end (x = 0 unless that is

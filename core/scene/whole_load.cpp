@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ricochet/scene/bodies.hpp>
@@ -30,10 +28,7 @@ LoadSpec whole_load(const SceneSpec& scene) {
     }
     LoadTerm& term = load.terms.emplace_back();
     term.force = true;
-    term.history = force.pulsation == 0
-                       ? Formula(at_start)
-                       : Formula(fmt::format("({})*cos(({})*t + ({}))", force.amplitude, force.pulsation, force.phase),
-                                 pointer, "t");
+    term.history = force.pulsation == 0 ? Formula(at_start) : Formula(force, pointer);
     if (body.empty()) continue;
     term.place.emplace();
     term.place->body = body;

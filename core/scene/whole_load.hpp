@@ -7,7 +7,7 @@ namespace ricochet {
 
 /// A force F cos(ωt + ψ) on an oscillator.
 struct HarmonicForce {
-  OscillatorSpec::Force force;
+  HarmonicTerm force;
   std::string body;     ///< whose it is; empty: the scene has one structure
   std::string pointer;  ///< where the scene says it
 };

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <thread>
@@ -236,4 +237,21 @@ TEST_CASE("what is no formula is told with its place, an unknown name with the n
   CHECK_FALSE(is_formula_name("1a"));
   CHECK_FALSE(is_formula_name("a-b"));
   CHECK_FALSE(is_formula_name(""));
+}
+
+TEST_CASE("a harmonic term has the values of its text, to the last bit") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-40, 40), exponent(-6, 6);
+  const auto draw = [&] { return number(random) * std::pow(10, exponent(random)); };
+  for (int k = 0; k < 200; ++k) {
+    const HarmonicTerm term{draw(), draw(), k % 2 == 0 ? 0 : draw()};
+    const Formula made(term, "/here"), written(made.text(), "/here", "t");
+    CHECK(made.uses_t());
+    CHECK_FALSE(made.uses_x());
+    CHECK(made.operations() == written.operations());
+    for (int i = 0; i < 20; ++i) {
+      const double t = std::abs(draw());
+      CHECK(made(0, t) == written(0, t));
+    }
+  }
 }

@@ -45,6 +45,7 @@ TEST_CASE("t elsewhere, two pulsations, a chirp and a condition are none") {
     INFO(text);
     CHECK_FALSE(of(text));
   }
+  CHECK(pulsation_of(Formula(HarmonicTerm{2, -40, 0.3}, "")) == 40.0);
   CHECK_FALSE(pulsation_of(Formula([](double t) { return t; }, "sin(40*t)", "")));
   CHECK_FALSE(of("sin(40*x)"));
 }
