@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -31,6 +32,16 @@ std::vector<std::string> letters(const std::string& variables) {
   std::vector<std::string> names;
   for (const char variable : variables) names.emplace_back(1, variable);
   return names;
+}
+
+/// Of a text that is a decimal number alone, which needs no parser.
+std::optional<double> written_number(const std::string& text) {
+  const std::size_t first = text.starts_with('-') ? 1 : 0;
+  if (first == text.size() || std::isdigit(static_cast<unsigned char>(text[first])) == 0) return std::nullopt;
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
 }
 
 /// Derivative at s of the Lagrange polynomials on the nodes −3 … 3.
@@ -115,6 +126,10 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
   source_->text = text;
   source_->pointer = pointer;
   source_->variables = variables;
+  if (const auto number = written_number(text)) {
+    source_->constant = *number;
+    return;
+  }
   require_expression(text, pointer);
   auto compiled = std::make_unique<Compiled>(variables);
   mu::Parser& parser = compiled->parser;

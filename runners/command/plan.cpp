@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <ostream>
 #include <set>
 
@@ -170,17 +171,22 @@ struct StudyPlan {
   std::map<std::string, std::string> why_not;  // id → reason
 };
 
-StudyPlan plan_study(const Study& study, CasePlanner& planner) {
+std::vector<PlanOutcome> plan_all(const Study& study, CasePlanner& planner, int at_once, const char* what) {
+  WaitingLine waiting(what);
+  return planner.plan_all(study.cases, at_once, [&](std::size_t done) { waiting.done(done, study.cases.size()); });
+}
+
+StudyPlan plan_study(const Study& study, CasePlanner& planner, int at_once) {
   StudyPlan all;
-  WaitingLine waiting("planning cases");
-  for (const StudyCase& study_case : study.cases) {
-    waiting.done(all.why_not.size(), study.cases.size());
+  std::vector<PlanOutcome> outcomes = plan_all(study, planner, at_once, "planning cases");
+  for (std::size_t i = 0; i < study.cases.size(); ++i) {
+    const StudyCase& study_case = study.cases[i];
     std::string& why = all.why_not[study_case.id];
     if (study_case.excluded) {
       ++all.costs.excluded;
       why = "excluded: " + *study_case.excluded;
     } else {
-      auto [plan, failure, seconds] = planner.plan(study_case);
+      auto& [plan, failure, seconds] = outcomes[i];
       if (!failure.empty()) {
         ++all.costs.failed;
         why = fails + failure;
@@ -211,18 +217,18 @@ void print_doubts(const Study& study, std::ostream& out) {
   }
 }
 
-/// Leaves of the study the cases of one part.
-void keep_part(Study& study, const StudyPart& part, CasePlanner& planner) {
+/// The study with the cases of one part.
+Study part_of(const Study& study, const StudyPart& part, CasePlanner& planner, int at_once) {
   check_part(study, part);
   std::map<std::string, double> seconds;
-  WaitingLine waiting("planning all cases, to deal them into parts");
-  for (const StudyCase& one : study.cases) {
-    waiting.done(seconds.size(), study.cases.size());
-    if (!one.excluded) seconds[one.id] = planner.plan(one).plan.predicted_seconds;
-  }
-  std::vector<StudyCase> own;
-  for (const StudyCase* one : cases_of_part(study, part, seconds)) own.push_back(*one);
-  study.cases = std::move(own);
+  const std::vector<PlanOutcome> outcomes =
+      plan_all(study, planner, at_once, "planning all cases, to deal them into parts");
+  for (std::size_t i = 0; i < study.cases.size(); ++i)
+    if (!study.cases[i].excluded) seconds[study.cases[i].id] = outcomes[i].plan.predicted_seconds;
+  Study own = study;
+  own.cases.clear();
+  for (const StudyCase* one : cases_of_part(study, part, seconds)) own.cases.push_back(*one);
+  return own;
 }
 
 std::string table_of_plans(const Study& study, const StudyPlan& all, const std::vector<AxisValues>& axes) {
@@ -252,10 +258,11 @@ std::string table_of_plans(const Study& study, const StudyPlan& all, const std::
 int command_plan(const Arguments& arguments, std::ostream& out) {
   const AllowedProcessors cores = allowed_processors();
   return with_study(arguments, [&](const OpenStudy& open) -> int {
-    Study study = open.study;
     CasePlanner planner(open.study, open.catalogue, open.registry);
-    if (!arguments.part.whole()) keep_part(study, arguments.part, planner);
-    StudyPlan all = plan_study(study, planner);
+    std::optional<Study> part;
+    if (!arguments.part.whole()) part = part_of(open.study, arguments.part, planner, cores.count);
+    const Study& study = part ? *part : open.study;
+    StudyPlan all = plan_study(study, planner, cores.count);
     const Forecast costs = forecast(study, all.runnable, open.registry);
     const std::vector<AxisValues> axes = axis_values(study);
     const auto runnable = static_cast<std::size_t>(all.costs.runnable);

@@ -216,9 +216,9 @@ std::string structure_text(const Group& group, const StudyCase& one, const std::
 }  // namespace
 
 std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
-  std::vector<std::pair<std::string, Group>> groups;
-  for (const PlannedCase& one : cases)
-    in_order_met(groups, structures_of(one.study_case->scene_json).dump()).push_back(&one);
+  InOrderMet<std::string, Group> met;
+  for (const PlannedCase& one : cases) met[structures_of(one.study_case->scene_json).dump()].push_back(&one);
+  const auto groups = std::move(met).list();
   std::string text;
   for (std::size_t g = 0; g < std::min(most_structures, groups.size()); ++g) {
     const Group& group = groups[g].second;

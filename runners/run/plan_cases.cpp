@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
+#include <exception>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <ricochet/loader/child.hpp>
 #include <set>
@@ -15,6 +18,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
+#include "runners/run/on_threads.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/table/text.hpp"
@@ -80,6 +84,34 @@ PlanOutcome CasePlanner::plan(const StudyCase& study_case) {
   PlanOutcome outcome = planned(study_case);
   outcome.seconds = thread_seconds() - begin;
   return outcome;
+}
+
+std::vector<PlanOutcome> CasePlanner::plan_all(const std::vector<StudyCase>& cases, int at_once,
+                                               const std::function<void(std::size_t)>& done) {
+  std::vector<PlanOutcome> outcomes(cases.size());
+  std::atomic<std::size_t> next{0}, planned{0};
+  std::atomic<bool> stop{false};
+  std::mutex failing;
+  std::map<std::size_t, std::exception_ptr> failures;
+  const auto plan_those = [&](bool foreign) {
+    for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
+      if (cases[i].excluded || uses_foreign(cases[i]) != foreign) continue;
+      try {
+        outcomes[i] = plan(cases[i]);
+        done(++planned);
+      } catch (...) {
+        const std::lock_guard guard(failing);
+        failures[i] = std::current_exception();
+        stop = true;
+      }
+    }
+  };
+  on_threads(at_once, [&] { plan_those(false); });
+  // A process is not forked while others of its threads are at work.
+  next = 0;
+  plan_those(true);
+  if (!failures.empty()) std::rethrow_exception(failures.begin()->second);
+  return outcomes;
 }
 
 PlanOutcome CasePlanner::planned(const StudyCase& study_case) {

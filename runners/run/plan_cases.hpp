@@ -24,14 +24,18 @@ struct PlanOutcome {
   double seconds = 0;   ///< processor time of planning it
 };
 
-/// Plans the cases of a study one by one, as `ricochet plan` shows them. A case that uses a foreign plugin is planned
-/// in a child process: whatever the plugin does there, the other cases have their plan. One that does not come to an
-/// end is waited for once, not once per case. Throws InputError as plan_for does.
+/// Plans the cases of a study, as `ricochet plan` shows them. A case that uses a foreign plugin is planned in a child
+/// process: whatever the plugin does there, the other cases have their plan. One that does not come to an end is waited
+/// for once, not once per case. Throws InputError as plan_for does.
 class CasePlanner {
  public:
   CasePlanner(const Study& study, const Catalogue& catalogue, const Registry& registry)
       : study_(study), catalogue_(catalogue), registry_(registry) {}
   PlanOutcome plan(const StudyCase& study_case);
+  /// The same of all, in their order, on so many threads where no child process is needed. Nothing of excluded cases.
+  /// `done` hears how many there are so far, from any thread. Of several InputErrors that of the first case is thrown.
+  std::vector<PlanOutcome> plan_all(const std::vector<StudyCase>& cases, int at_once,
+                                    const std::function<void(std::size_t)>& done);
   /// What `question` answers, which calls the methods of this case: in a child process where one of them is foreign. ""
   /// where they go wrong.
   std::string ask(const StudyCase& study_case, const std::function<std::string()>& question) const;

@@ -263,6 +263,7 @@ std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlann
   std::size_t told = 0, more = 0;
   for (const PlannedCase& planned : cases) {
     const StudyCase& one = *planned.study_case;
+    const std::string structures = structures_of(one.scene_json).dump(), law = content_of(one.contact).dump();
     const auto say = [&](const std::string& key, const auto& any, const auto& lines) {
       if (!met.insert(key).second) return;
       if (told == most_contact_lines) {
@@ -273,15 +274,14 @@ std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlann
       text += line;
       told += !line.empty();
     };
-    if (told < most_contact_lines &&
-        met.insert(structures_of(one.scene_json).dump() + content_of(one.contact).dump()).second)
+    if (told < most_contact_lines && met.insert(structures + law).second)
       text += planner.ask(one, [&] { return table_line(one, registry); });
     for (const double h : {planned.plan.coarsest_step, planned.plan.finest_step}) {
       if (h <= 0) continue;
-      const std::string scene = structures_of(one.scene_json).dump() + Cell(h).text();
+      const std::string scene = structures + Cell(h).text();
       say(
-          scene + content_of(one.contact).dump() + content_of(one.time).dump(),
-          [&] { return !springs_of(one, registry).empty(); }, [&] { return lines_of(one, h, registry); });
+          scene + law + content_of(one.time).dump(), [&] { return !springs_of(one, registry).empty(); },
+          [&] { return lines_of(one, h, registry); });
       if (!one.friction.name.empty())
         say(
             scene + "friction" + content_of(one.friction).dump(), [&] { return give_way_of(one, registry) > 0; },

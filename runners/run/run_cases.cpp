@@ -8,12 +8,11 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 #include <span>
-#include <system_error>
-#include <thread>
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/run/finish_run.hpp"
+#include "runners/run/on_threads.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -27,18 +26,6 @@ constexpr std::size_t most_tried = 16;
 // What travels to a worker together: a message costs a part of a millisecond.
 constexpr double least_seconds = 0.05;
 constexpr std::size_t most_together = 64;
-
-/// Runs `body` on so many threads, this one among them, until each has returned; `body` must not throw.
-void on_threads(int threads, const std::function<void()>& body) {
-  std::vector<std::thread> others;
-  try {
-    for (int i = 1; i < threads; ++i) others.emplace_back(body);
-  } catch (const std::system_error&) {
-    // No room for another one: fewer do it all.
-  }
-  body();
-  for (std::thread& one : others) one.join();
-}
 
 /// Runs cases one after the other; `ended` is told each record.
 void run_together(const CaseRunner& runner, std::span<const PendingCase> cases, const std::atomic<bool>& stop,
