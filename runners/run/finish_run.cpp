@@ -17,6 +17,7 @@
 #include "runners/run/asked_text.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/exit_code.hpp"
+#include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/run/waiting_line.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -30,10 +31,6 @@
 #include "runners/table/text.hpp"
 
 namespace ricochet {
-
-void say(std::FILE* out, std::string_view text) {
-  say_as_it_is(out, plain_text(text));
-}
 
 namespace {
 

@@ -18,15 +18,6 @@ namespace ricochet {
 /// done.
 Table reasons_table(const StudyResults& results);
 
-/// Writes text for a person, plain_text() of it, and flushes. A failure is let be: a closed terminal or a full log must
-/// not cost a run.
-void say(std::FILE* out, std::string_view text);
-/// The same with what steers a terminal.
-inline void say_as_it_is(std::FILE* out, std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), out);
-  std::fflush(out);
-}
-
 // How a folder whose cases are all in its store becomes one of results.
 
 /// Makes the views of the store and writes the tables, curves and report of what it holds, which is returned.

@@ -13,6 +13,7 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/finish_run.hpp"
+#include "runners/run/say.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/checksums.hpp"

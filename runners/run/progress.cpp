@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "runners/march/seconds.hpp"
-#include "runners/run/finish_run.hpp"
+#include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/table/text.hpp"
 
@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kLineEverySeconds = 2;
 constexpr double kElsewhereEverySeconds = 5;
-constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
 // A case in flight that should have ended is expected to take so much more of what it took.
 constexpr double kOverrun = 0.1;
 // s that a case takes beside its integration before any was seen: a transaction of the store on a usual disk.
@@ -177,14 +176,13 @@ ProgressState Progress::state() const {
 void Progress::draw() {
   last_line_ = Clock::now();
   if (terminal_)
-    say_as_it_is(out_, fmt::format("\r{}\x1b[K", progress_bar(state(), terminal_width(out_) - 1)));
+    say_in_place(out_, progress_bar(state(), terminal_width(out_) - 1));
   else
     say(out_, fmt::format("{}\n", progress_text(state())));
 }
 
 void Progress::erase() {
-  if (!terminal_) return;
-  say_as_it_is(out_, "\r\x1b[K");
+  if (terminal_) say_in_place(out_, "");
 }
 
 void Progress::refresh() {
@@ -204,7 +202,7 @@ void Progress::refresh() {
       lock.lock();
       continue;
     }
-    wake_.wait_for(lock, kRedrawEvery);
+    wake_.wait_for(lock, redrawn_every);
   }
 }
 

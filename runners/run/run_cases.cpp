@@ -11,9 +11,9 @@
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
-#include "runners/run/finish_run.hpp"
 #include "runners/run/on_threads.hpp"
 #include "runners/run/plan_cases.hpp"
+#include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/table/in_order_met.hpp"
 

@@ -14,6 +14,7 @@
 #include "runners/march/seconds.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/finish_run.hpp"
+#include "runners/run/say.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/run/waiting_line.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -202,7 +203,7 @@ class FolderRun {
     const int running = static_cast<int>(pending.size());
     double work = 0;
     for (const PendingCase& one : pending) work += one.predicted_seconds;
-    Progress progress(runner_.messages, ::isatty(::fileno(runner_.messages)) != 0, running, work, stop_,
+    Progress progress(runner_.messages, is_terminal(runner_.messages), running, work, stop_,
                       [this](const std::string& text) {
                         try {
                           store_.save_progress(text + ", " + workers());

@@ -1,27 +1,21 @@
 #include "runners/run/waiting_line.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "runners/march/seconds.hpp"
-#include "runners/run/finish_run.hpp"
-#include "runners/table/text.hpp"
+#include "runners/run/say.hpp"
 
 namespace ricochet {
 namespace {
 
-constexpr std::chrono::milliseconds on_a_terminal{500}, in_a_log{10000}, redrawn_every{200};
+constexpr std::chrono::milliseconds on_a_terminal{500}, in_a_log{10000};
 
 // Since when nothing was said: waits one after the other are one wait.
 std::atomic<std::chrono::steady_clock::time_point> quiet_since{std::chrono::steady_clock::now()};
-
-bool is_terminal(std::FILE* out) {
-  return ::isatty(::fileno(out)) != 0;
-}
 
 std::chrono::milliseconds left_of(std::chrono::milliseconds wait) {
   const auto gone =
@@ -51,7 +45,7 @@ WaitingLine::~WaitingLine() {
   wake_.notify_all();
   if (teller_.joinable()) teller_.join();
   if (!told_) return;
-  if (terminal_) say_as_it_is(out_, "\r\x1b[K");
+  if (terminal_) say_in_place(out_, "");
   quiet_since = std::chrono::steady_clock::now();
 }
 
@@ -67,7 +61,7 @@ void WaitingLine::tell() {
   if (wake_.wait_for(lock, after_, is_over)) return;
   told_ = true;
   if (!terminal_) return say(out_, text() + "\n");
-  do say_as_it_is(out_, fmt::format("\r{}\x1b[K", plain_text(text())));
+  do say_in_place(out_, text());
   while (!wake_.wait_for(lock, redrawn_every, is_over));
 }
 
