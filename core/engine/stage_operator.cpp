@@ -377,7 +377,7 @@ class NearOperator final : public StageOperator {
   }
 
  private:
-  // The residual becomes that of the solution: nothing.
+  // S x = r from x = 0; r becomes what is left of it.
   void solve() {
     constexpr double round_off = 1e-17;  // of the first residual, in the norm of S₀⁻¹
     constexpr int most = 200;
