@@ -253,7 +253,10 @@ void drop_round_off(Point& point, double largest_of_all) {
 std::vector<Point> Evidence::points(const std::string& name, const Cases& cases,
                                     const std::vector<std::string>& columns, bool shares) const {
   std::vector<Point> out = alone(name, cases, columns, shares);
-  test_by_schemes(out, name, columns, shares);
+  if (const auto varying = schemes(name, columns)) {
+    test_by_schemes(out, name, *varying, shares);
+    test_by_contact(out, name, *varying, shares);
+  }
   return out;
 }
 
@@ -283,6 +286,18 @@ bool is_compliant(const Point& point) {
   return std::all_of(point.behind.begin(), point.behind.end(), [](const CaseRecord* one) {
     return measure(*one, contact_steps_measure) && !measure(*one, "friction_residual");
   });
+}
+
+/// Whether it has no value or zeros alone, as nothing is touched, of a stop: as that is not.
+bool is_idle(const Point& point, const std::string& stop) {
+  if (!point.estimate) return point.of_untouched_stop;
+  const std::string impulse = "impulse[" + stop + "]";
+  const bool zero = std::all_of(point.values.begin(), point.values.end(), [](const auto& at) {
+    return std::all_of(at.second.begin(), at.second.end(), [](const auto& one) { return one.second == 0; });
+  });
+  return zero && (untouched(point) ||
+                  (!stop.empty() && std::all_of(point.behind.begin(), point.behind.end(),
+                                                [&](const CaseRecord* one) { return measure(*one, impulse) == 0.0; })));
 }
 
 /// Widens `own` where its interval and that of another exclude each other, though both have one limit: one of them is
@@ -347,20 +362,26 @@ Estimate tested(const Point& point, const std::vector<Point>& peers) {
 
 }  // namespace
 
-void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& name,
-                               const std::vector<std::string>& columns, bool shares) const {
+std::optional<Evidence::Schemes> Evidence::schemes(const std::string& name,
+                                                   const std::vector<std::string>& columns) const {
   const MeasureInfo* info = measure_info(name);
   if (contains(columns, "step") || contains(columns, "steps_per_period") || !info || info->of_each_size ||
       info->of == MeasureInfo::Of::computation)
-    return;
-  Cases all;
+    return std::nullopt;
+  Schemes out;
   for (const CaseRecord& record : results().cases)
-    if (!is_reference(record)) all.push_back(&record);
-  std::vector<std::string> told = choices(all, name, columns), others;
-  told.insert(told.end(), columns.begin(), columns.end());
-  std::copy_if(told.begin(), told.end(), std::back_inserter(others),
+    if (!is_reference(record)) out.all.push_back(&record);
+  out.told = choices(out.all, name, columns);
+  out.told.insert(out.told.end(), columns.begin(), columns.end());
+  std::copy_if(out.told.begin(), out.told.end(), std::back_inserter(out.others),
                [](const auto& one) { return !is_of_scheme(one); });
-  if (others.size() == told.size()) return;
+  return out.others.size() == out.told.size() ? std::nullopt : std::optional(std::move(out));
+}
+
+void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& name, const Schemes& varying,
+                               bool shares) const {
+  const auto& [every, told, others] = varying;
+  Cases all = every;
   // Those that have a limit, by its name.
   std::map<std::string, std::vector<Point>> peers;
   for (Point& point : points)
@@ -380,6 +401,31 @@ void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& na
     if (point.limit.empty() || point.estimate->disproved) continue;
     for (const Point& peer : peers[point.limit])
       if (!peer.estimate->disproved && same_draws(point, peer)) narrow_by(*point.estimate, *peer.estimate);
+  }
+}
+
+void Evidence::test_by_contact(std::vector<Point>& points, const std::string& name, const Schemes& varying,
+                               bool shares) const {
+  const auto& [every, told, others] = varying;
+  std::map<std::string, std::vector<Point*>> idle;
+  for (Point& point : points)
+    if (is_idle(point, split_measure(name).second)) idle[key(point.first(), others)].push_back(&point);
+  if (idle.empty()) return;
+  Cases all = every;
+  std::erase_if(all, [&](const CaseRecord* one) { return !idle.contains(key(*one, others)); });
+  for (const Point& peer : alone(name, all, told, shares)) {
+    if (!peer.estimate || peer.estimate->value == 0) continue;
+    for (Point* point : idle[key(peer.first(), others)]) {
+      point->of_untouched_stop = false;
+      if (!point->estimate) continue;
+      Estimate& own = *point->estimate;
+      const double value = std::abs(peer.estimate->value), told = value + peer.estimate->u().value_or(0);
+      if (told <= own.step.value_or(0)) continue;
+      own.step = told;
+      own.step_doubt = (value + peer.estimate->doubted_u().value_or(0)) / told;
+      own.few = "touches nothing, and other schemes do";
+      own.disproved = true;
+    }
   }
 }
 

@@ -162,9 +162,20 @@ class Evidence {
   /// points(), each by its own refinement alone.
   std::vector<Point> alone(const std::string& measure, const Cases& cases, const std::vector<std::string>& columns,
                            bool shares) const;
+  /// What tells points apart if the time scheme and its parameters do not, and `told`, if they do as well. Nothing
+  /// where no scheme varies, or where the step is chosen.
+  struct Schemes {
+    Cases all;
+    std::vector<std::string> told, others;
+  };
+  std::optional<Schemes> schemes(const std::string& measure, const std::vector<std::string>& columns) const;
   /// Widens these where another scheme with the same limit excludes them, and narrows them to where one has settled,
   /// whether it is asked or not.
-  void test_by_schemes(std::vector<Point>& points, const std::string& measure, const std::vector<std::string>& columns,
+  void test_by_schemes(std::vector<Point>& points, const std::string& measure, const Schemes& schemes,
+                       bool shares) const;
+  /// Widens what is zero, as nothing is touched, to what another scheme with the same law tells at its finest. Until
+  /// something is touched the motion has one limit, whatever the scheme.
+  void test_by_contact(std::vector<Point>& points, const std::string& measure, const Schemes& schemes,
                        bool shares) const;
 
   const Choices& study_;
