@@ -45,6 +45,17 @@ bool untouched(const Point& point) {
                      [](const CaseRecord* one) { return measure(*one, "contact_instants") == 0.0; });
 }
 
+bool is_idle(const Point& point, const std::string& stop) {
+  if (!point.estimate) return point.of_untouched_stop;
+  const std::string impulse = "impulse[" + stop + "]";
+  const bool zero = std::all_of(point.values.begin(), point.values.end(), [](const auto& at) {
+    return std::all_of(at.second.begin(), at.second.end(), [](const auto& one) { return one.second == 0; });
+  });
+  return zero && (untouched(point) ||
+                  (!stop.empty() && std::all_of(point.behind.begin(), point.behind.end(),
+                                                [&](const CaseRecord* one) { return measure(*one, impulse) == 0.0; })));
+}
+
 bool doubtful(const Point& point) {
   const Cases& those = point.behind.empty() ? point.cases : point.behind;
   return std::all_of(those.begin(), those.end(), [](const CaseRecord* one) { return !one->reasons.empty(); });
@@ -286,18 +297,6 @@ bool is_compliant(const Point& point) {
   return std::all_of(point.behind.begin(), point.behind.end(), [](const CaseRecord* one) {
     return measure(*one, contact_steps_measure) && !measure(*one, "friction_residual");
   });
-}
-
-/// Whether it has no value or zeros alone, as nothing is touched, of a stop: as that is not.
-bool is_idle(const Point& point, const std::string& stop) {
-  if (!point.estimate) return point.of_untouched_stop;
-  const std::string impulse = "impulse[" + stop + "]";
-  const bool zero = std::all_of(point.values.begin(), point.values.end(), [](const auto& at) {
-    return std::all_of(at.second.begin(), at.second.end(), [](const auto& one) { return one.second == 0; });
-  });
-  return zero && (untouched(point) ||
-                  (!stop.empty() && std::all_of(point.behind.begin(), point.behind.end(),
-                                                [&](const CaseRecord* one) { return measure(*one, impulse) == 0.0; })));
 }
 
 /// Widens `own` where its interval and that of another exclude each other, though both have one limit: one of them is

@@ -86,6 +86,8 @@ struct Point {
 
 /// Whether none of its cases touched a stop.
 bool untouched(const Point& point);
+/// Whether it has no value or zeros alone, as nothing is touched, of a stop: as that is not.
+bool is_idle(const Point& point, const std::string& stop);
 /// Whether each of its cases is doubtful: too short, a load between its steps.
 bool doubtful(const Point& point);
 

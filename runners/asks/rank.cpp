@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <set>
 
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/lines.hpp"
@@ -18,6 +21,12 @@ namespace {
 
 constexpr const char* over_stops = "stops";
 
+/// The first and the last place that a line may have.
+struct Place {
+  std::size_t first = 1, last = 1;
+  std::string text() const { return first == last ? std::to_string(first) : fmt::format("{} to {}", first, last); }
+};
+
 /// What is ranked, in one combination of all else, the largest first.
 struct Order {
   std::string level;
@@ -27,11 +36,17 @@ struct Order {
   std::vector<const Line*> untouched = {};  ///< of stops that nothing touches, which come last
   /// Groups of neighbours that are not told apart, as places in `lines`.
   std::vector<std::vector<std::size_t>> groups;
+  std::vector<std::size_t> aside;  ///< those told from none of some that are told apart without it
+  std::vector<Place> places;       ///< of each line
+  bool surely_first() const { return lines.size() > 1 && places.front().last == 1; }
 };
 
-/// Whether two intervals touch, or may where one is not settled.
-bool touch(const Estimate& higher, const Estimate& lower) {
-  return !higher.has_interval() || !lower.has_interval() || higher.least() <= lower.most();
+/// Between what a line is told to lie; of one without an interval nothing is.
+double lowest(const Line& line) {
+  return line.estimate().has_interval() ? line.estimate().least() : -INFINITY;
+}
+double highest(const Line& line) {
+  return line.estimate().has_interval() ? line.estimate().most() : INFINITY;
 }
 
 /// Whether two lines are told apart by their difference at equal steps, meshes and draws, in which cancels what moves
@@ -42,31 +57,83 @@ bool differs(const Line& a, const Line& b) {
   return pair && !pair->least && pair->u_most && pair->difference > *pair->u_most;
 }
 
-/// Lines by falling value, cut where all before are above all after, by their intervals or their differences: one may
-/// reach beyond its neighbours. What has no interval is told from nothing.
-std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& lines) {
-  constexpr std::size_t most_paired = 64;
-  std::vector<double> highest_from(lines.size() + 1, -INFINITY);
-  for (std::size_t k = lines.size(); k-- > 0;)
-    highest_from[k] =
-        std::max(highest_from[k + 1], lines[k]->estimate().has_interval() ? lines[k]->estimate().most() : INFINITY);
-  std::vector<std::vector<std::size_t>> groups;
-  std::size_t reach = 0;  // the last line that one before is not above
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (k == 0 || reach < k) groups.emplace_back();
-    groups.back().push_back(k);
-    const double least = lines[k]->estimate().has_interval() ? lines[k]->estimate().least() : -INFINITY;
-    const auto behind = highest_from.begin() + static_cast<std::ptrdiff_t>(k) + 1;
-    auto last = static_cast<std::size_t>(
-        std::partition_point(behind, highest_from.end() - 1, [&](double most) { return most >= least; }) -
-        highest_from.begin() - 1);
-    const auto is_above = [&](const Line& other) {
-      return !touch(lines[k]->estimate(), other.estimate()) || differs(*lines[k], other);
-    };
-    while (last > std::max(reach, k) && lines.size() <= most_paired && is_above(*lines[last])) --last;
-    reach = std::max(reach, last);
+/// Which lines are above which, by their intervals, or by their differences where they are few. Lines by falling value.
+class Apart {
+ public:
+  explicit Apart(const std::vector<const Line*>& lines) {
+    for (const Line* line : lines) {
+      lowest_.push_back(lowest(*line));
+      highest_.push_back(highest(*line));
+    }
+    if (lines.size() > most_paired) return;
+    for (std::size_t a = 0; a < lines.size(); ++a)
+      for (std::size_t b = a + 1; b < lines.size(); ++b)
+        if (lowest_[a] <= highest_[b] && differs(*lines[a], *lines[b])) differ_.insert({a, b});
   }
-  return groups;
+
+  bool above(std::size_t a, std::size_t b) const { return lowest_[a] > highest_[b] || differ_.contains({a, b}); }
+
+  std::vector<Place> places() const {
+    const std::size_t n = lowest_.size();
+    std::vector<Place> out(n, {1, n});
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = a + 1; b < n; ++b)
+        if (above(a, b)) {
+          ++out[b].first;
+          --out[a].last;
+        }
+    return out;
+  }
+
+  /// Some of the lines, cut where all before are above all after: one may reach beyond its neighbours.
+  std::vector<std::vector<std::size_t>> groups(const std::vector<std::size_t>& lines) const {
+    std::vector<std::vector<std::size_t>> out;
+    std::size_t reach = 0;  // the last line that one before is not above
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      if (k == 0 || reach < k) out.emplace_back();
+      out.back().push_back(lines[k]);
+      std::size_t last = lines.size() - 1;
+      while (last > std::max(reach, k) && above(lines[k], lines[last])) --last;
+      reach = std::max(reach, last);
+    }
+    return out;
+  }
+
+  /// Which of a group is told from none of the others, where these are told apart without it.
+  std::optional<std::size_t> aside(const std::vector<std::size_t>& group) const {
+    if (group.size() > most_paired) return std::nullopt;
+    for (const std::size_t one : group) {
+      if (std::any_of(group.begin(), group.end(),
+                      [&](std::size_t other) { return above(one, other) || above(other, one); }))
+        continue;
+      std::vector<std::size_t> rest = group;
+      std::erase(rest, one);
+      if (groups(rest).size() > 1) return one;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t most_paired = 64;
+  std::vector<double> lowest_, highest_;
+  std::set<std::pair<std::size_t, std::size_t>> differ_;
+};
+
+/// Tells lines by falling value apart as far as they are.
+void tell_apart(Order& order) {
+  const Apart apart(order.lines);
+  order.places = apart.places();
+  std::vector<std::size_t> told(order.lines.size());
+  std::iota(told.begin(), told.end(), 0);
+  order.groups = apart.groups(told);
+  for (std::size_t g = 0; g < order.groups.size();) {
+    const auto one = apart.aside(order.groups[g++]);
+    if (!one) continue;
+    order.aside.push_back(*one);
+    std::erase(told, *one);
+    order.groups = apart.groups(told);
+    g = 0;
+  }
 }
 
 class Ranking {
@@ -83,21 +150,28 @@ class Ranking {
     for (const Line& line : lines_.all) {
       Order& order = orders[evidence.key(line.point.first(), others_) + (over_ == over_stops ? "" : '\n' + line.stop)];
       order.level = level_of(line);
-      if (line.known())
-        order.lines.push_back(&line);
-      else if (line.point.of_untouched_stop)
+      if (is_idle(line))
         order.untouched.push_back(&line);
+      else if (line.known())
+        order.lines.push_back(&line);
       else if (std::any_of(line.point.cases.begin(), line.point.cases.end(),
                            [](const CaseRecord* one) { return one->status == Status::done; }))
         ++order.without;
     }
     orders_ = std::move(orders).list();
     for (auto& [key, order] : orders_) {
+      // Where nothing at all is touched, none comes last.
+      if (order.lines.empty() && order.without == 0) {
+        const auto known = [](const Line* one) { return one->known(); };
+        std::copy_if(order.untouched.begin(), order.untouched.end(), std::back_inserter(order.lines), known);
+        std::erase_if(order.untouched, known);
+      }
       std::stable_sort(order.lines.begin(), order.lines.end(),
                        [](const Line* a, const Line* b) { return a->estimate().value > b->estimate().value; });
       for (const Line* line : order.lines) order.names.push_back(name_of(*line));
-      order.groups = grouped(order.lines);
+      tell_apart(order);
       if (order.without == 0) continue;
+      order.aside.clear();
       order.groups.assign(1, {});
       for (std::size_t k = 0; k < order.lines.size(); ++k) order.groups.front().push_back(k);
     }
@@ -129,17 +203,24 @@ class Ranking {
     for (const auto& [key, order] : orders_) {
       all_firm = all_firm && is_firm(order);
       any_told = any_told || order.groups.size() > 1;
-      surely_first +=
-          order.names.front() == first.names.front() && order.groups.front().size() == 1 && order.groups.size() > 1 ? 1
-                                                                                                                    : 0;
+      surely_first += order.names.front() == first.names.front() && order.surely_first() ? 1 : 0;
     }
     const auto [turned, turned_to] = turns();
     out.passes = !turned.empty() ? Verdict::no : all_firm ? Verdict::yes : Verdict::open;
     out.verdict = !turned.empty() ? "turned round" : all_firm ? "told apart" : any_told ? "in part" : "not told apart";
     if (!firm && !first.lines.empty())
-      out.reason = first.without > 0 ? without_value(first) : first.lines.front()->estimate().unknown();
+      out.reason = first.without > 0               ? without_value(first)
+                   : is_idle(*first.lines.front()) ? "nothing is touched"
+                                                   : first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
-    if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
+    if (std::vector<std::string> loose; !first.aside.empty()) {
+      for (const std::size_t k : first.aside) loose.push_back(name_of(*first.lines[k]));
+      const Estimate& one = first.lines[first.aside.front()]->estimate();
+      rest.push_back({fmt::format("; {}{} is told from none of them", some_of(loose, 1),
+                                  loose.size() == 1 ? " (" + lines_.text(one) + ")" : ""),
+                      fmt::format("; {} may have any place", some_of(loose, 1))});
+    } else if (!out.reason.empty())
+      rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (std::vector<std::string> idle; !first.untouched.empty()) {
       for (const Line* line : first.untouched) idle.push_back(name_of(*line));
       rest.push_back({"; nothing touches " + some_of(idle), fmt::format("; {} never touched", idle.size())});
@@ -180,7 +261,10 @@ class Ranking {
   }
 
  private:
-  static bool is_firm(const Order& order) { return order.without == 0 && order.groups.size() == order.lines.size(); }
+  static bool is_firm(const Order& order) {
+    return order.without == 0 && order.groups.size() == order.lines.size() && !is_idle(*order.lines.front());
+  }
+  static bool is_idle(const Line& line) { return asks::is_idle(line.point, line.stop); }
   static std::string without_value(const Order& order) {
     return fmt::format("{} {} no value", order.without, order.without == 1 ? "has" : "have");
   }
@@ -223,21 +307,24 @@ class Ranking {
     std::string what = lines_.words.words;
     for (const std::string said : {"the ", "largest "})
       if (what.starts_with(said)) what.erase(0, said.size());
-    return fmt::format("Largest {}{}: {}{}", what, order.level.empty() ? "" : " with " + order.level,
-                       fmt::join(parts, ", then "), more > 0 ? fmt::format(", then {} more", more) : "");
+    std::vector<std::string> aside;
+    for (const std::size_t k : order.aside) aside.push_back(order.names[k]);
+    return fmt::format("Largest {}{}{}: {}{}", what, order.level.empty() ? "" : " with " + order.level,
+                       aside.empty() ? "" : ", " + some_of(aside, 1) + " aside", fmt::join(parts, ", then "),
+                       more > 0 ? fmt::format(", then {} more", more) : "");
   }
 
   /// The levels of all else with which another is surely the largest, and which one is so with the first of them.
   std::pair<std::vector<std::string>, std::string> turns() const {
     std::pair<std::vector<std::string>, std::string> out;
     const Order& first = orders_[told_].second;
-    if (first.groups.front().size() > 1) return out;
+    if (!first.surely_first()) return out;
     for (const auto& keyed : orders_) {
       const Order& order = keyed.second;
       if (order.names.front() == first.names.front()) continue;
       // Nothing is turned round where the first is not there, or not told from others.
       const bool there = std::find(order.names.begin(), order.names.end(), first.names.front()) != order.names.end();
-      if (!there || order.groups.front().size() > 1) continue;
+      if (!there || !order.surely_first()) continue;
       if (out.first.empty()) out.second = order.names.front();
       out.first.push_back(order.level);
     }
@@ -245,38 +332,38 @@ class Ranking {
   }
 
   /// Why a line has no place of its own: intervals touch, or one is not settled and may be farther off.
-  static std::string why_together(const Order& order, const std::vector<std::size_t>& group, std::size_t k) {
+  static std::string why_together(const Order& order, std::size_t k) {
     const Estimate& own = order.lines[k]->estimate();
     if (!own.has_interval()) return own.unsettled().empty() ? own.unknown() : "it " + own.unsettled();
+    const auto meets = [&](std::size_t other) {
+      return other != k && lowest(*order.lines[other]) <= highest(*order.lines[k]) &&
+             lowest(*order.lines[k]) <= highest(*order.lines[other]);
+    };
     std::string moving;
-    for (const std::size_t other : group) {
+    for (std::size_t other = 0; other < order.lines.size(); ++other) {
+      if (!meets(other)) continue;
       const Estimate& one = order.lines[other]->estimate();
       if (!one.has_interval()) return order.names[other] + " has no interval";
-      if (other != k && own.low() <= one.high() && one.low() <= own.high())
-        return "its difference from a neighbour is not told from zero";
-      if (other != k && one.doubted() && moving.empty()) moving = "a neighbour " + one.unsettled();
+      if (own.low() <= one.high() && one.low() <= own.high())
+        return "its difference from " + order.names[other] + " is not told from zero";
+      if (one.doubted() && moving.empty()) moving = order.names[other] + " " + one.unsettled();
     }
-    return own.doubted() ? "it " + own.unsettled() : moving.empty() ? "a neighbour has no interval" : moving;
+    return own.doubted() || moving.empty() ? "it " + own.unsettled() : moving;
   }
 
   void add_rows(Answered& out, const Order& order) const {
-    std::size_t place = 1;
-    for (const std::vector<std::size_t>& group : order.groups) {
-      for (const std::size_t k : group) {
-        VerdictRow row = lines_.row(*order.lines[k]);
-        row.verdict = order.without > 0   ? word(Verdict::open)
-                      : group.size() == 1 ? std::to_string(place)
-                                          : fmt::format("{} to {}", place, place + group.size() - 1);
-        if (row.reason.empty() && order.without > 0)
-          row.reason = without_value(order);
-        else if (row.reason.empty() && group.size() > 1)
-          row.reason = why_together(order, group, k);
-        else if (row.reason.empty() && k + 1 < order.lines.size() &&
-                 touch(order.lines[k]->estimate(), order.lines[k + 1]->estimate()))
-          row.reason = "by its difference from the next at equal steps and seeds";
-        out.rows.push_back(std::move(row));
-      }
-      place += group.size();
+    for (std::size_t k = 0; k < order.lines.size(); ++k) {
+      VerdictRow row = lines_.row(*order.lines[k]);
+      const Place& place = order.places[k];
+      row.verdict = order.without > 0 ? word(Verdict::open) : place.text();
+      if (row.reason.empty() && order.without > 0)
+        row.reason = without_value(order);
+      else if (row.reason.empty() && place.first != place.last)
+        row.reason = is_idle(*order.lines[k]) ? "nothing is touched" : why_together(order, k);
+      else if (row.reason.empty() && k + 1 < order.lines.size() &&
+               lowest(*order.lines[k]) <= highest(*order.lines[k + 1]))
+        row.reason = "by its difference from the next at equal steps and seeds";
+      out.rows.push_back(std::move(row));
     }
     for (const Line* line : order.untouched) {
       out.rows.push_back(lines_.row(*line));

@@ -16,22 +16,6 @@
 using namespace ricochet;
 using namespace ricochet::asks;
 
-namespace {
-
-/// Values of two methods at four halved steps.
-StudyResults two_methods(const std::vector<double>& first, const std::vector<double>& second) {
-  Made made;
-  made.choices = {{"mass", {"m0", "m1"}}};
-  return synthetic::full_factorial(
-      made.choices, {8e-3, 4e-3, 2e-3, 1e-3},
-      [&](const std::vector<std::size_t>& at, double h) {
-        return (at[0] == 0 ? first : second)[static_cast<std::size_t>(std::lround(std::log2(8e-3 / h)))];
-      },
-      "impulse");
-}
-
-}  // namespace
-
 TEST_CASE("asks: what still moves with the step decides only where it is far") {
   // m1 rises by a thousandth at each halving, as slowly as that; both are 9 % apart.
   const std::vector<double> settled = {1.001, 1.0005, 1.00025, 1.000125}, moves = {0.909, 0.91, 0.911, 0.912};
@@ -121,24 +105,6 @@ TEST_CASE("asks: choices with one word are told by what has them") {
   // Whatever is asked, levels stand in the study's order.
   for (const VerdictRow& row : answer_of(results, {{"rank", "impulse"}, {"over", "stops.0.upper"}}).rows)
     CHECK(row.level.find("plate") < row.level.find("bar"));
-}
-
-TEST_CASE("asks: what an axis says nothing of is not ranked, and no level is \"none\"") {
-  Made made;
-  made.choices = {{"contact", {"signorini", "penalty"}}, {"contact.stiffness", {"1", "2"}}};
-  made.truth = [](const std::vector<std::size_t>& at) { return 1.0 + static_cast<double>(at[1]); };
-  made.error = 1e-3;
-  StudyResults results = made.results();
-  std::erase_if(results.cases,
-                [](const CaseRecord& one) { return one.axes[0].second == "signorini" && one.axes[1].second == "2"; });
-  for (CaseRecord& record : results.cases)
-    if (record.axes[0].second == "signorini") record.axes[1].second = nullptr;
-  const Answered ranked = answer_of(results, {{"rank", "impulse"}, {"over", "contact.stiffness"}});
-  INFO(ranked.sentence);
-  CHECK(ranked.verdict == "told apart");
-  CHECK(ranked.rows.size() == 2);
-  const Answered effect = answer_of(results, {{"effect", "contact.stiffness"}, {"on", "impulse"}, {"from", 0.01}});
-  for (const VerdictRow& row : effect.rows) CHECK_FALSE(row.level.ends_with("against "));
 }
 
 TEST_CASE("asks: two sizes decide three times what first order leaves of them") {
@@ -482,21 +448,6 @@ TEST_CASE("asks: shares of both signs are said with what they are shares of") {
              Catch::Contains("% of the lower level"));
 }
 
-TEST_CASE("asks: where one that is ranked has no value, none is called the largest") {
-  Made made;
-  made.choices = {{"mass", {"m0", "m1", "m2"}}};
-  made.truth = [](const std::vector<std::size_t>& at) { return static_cast<double>(at[0]); };
-  made.error = 1e-3;
-  StudyResults results = made.results();
-  for (CaseRecord& record : results.cases)
-    if (record.axes[0].second != "m0") record.measures.clear();
-  const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
-  INFO(answered.sentence);
-  CHECK(answered.sentence.find("Open: ") == 0);
-  CHECK(answered.sentence.find("2 of 3 have no value") != std::string::npos);
-  CHECK(answered.passes == Verdict::open);
-}
-
 TEST_CASE("asks: contacts that no step resolves keep no limit and break none") {
   Made made;
   made.choices = {{"mass", {"m0"}}};
@@ -669,33 +620,6 @@ TEST_CASE("asks: what holds in one range of an axis has both its ends") {
   CHECK(but_one.sentence.find("is not above 1.5 N s in one range of") != std::string::npos);
   CHECK(brackets(several) == 3);
   CHECK(several.sentence.find("in several ranges") != std::string::npos);
-}
-
-TEST_CASE("asks: beside a member without a value nothing has a place") {
-  Made made;
-  made.choices = {{"mass", {"m0", "m1", "m2"}}};
-  made.truth = [](const std::vector<std::size_t>& at) { return static_cast<double>(at[0]); };
-  made.error = 1e-6;
-  StudyResults results = made.results();
-  for (CaseRecord& record : results.cases)
-    if (record.axes[0].second == "m2") record.measures.clear();
-  const Answered open = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
-  INFO(open.sentence);
-  CHECK(open.passes == Verdict::open);
-  for (const VerdictRow& row : open.rows) CHECK(row.verdict == "open");
-  // What is refused is no member.
-  for (CaseRecord& record : results.cases)
-    if (record.axes[0].second == "m2") record.status = Status::refused;
-  CHECK(answer_of(results, {{"rank", "impulse"}, {"over", "mass"}}).passes == Verdict::yes);
-}
-
-TEST_CASE("asks: what is not settled, and touches no neighbour, is told as that") {
-  // One rises by a thousandth at each halving, the other by three.
-  const StudyResults results = two_methods({0.924, 0.925, 0.926, 0.927}, {0.903, 0.906, 0.909, 0.912});
-  const Answered ranked = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
-  INFO(ranked.sentence);
-  CHECK(ranked.verdict == "not told apart");
-  for (const VerdictRow& row : ranked.rows) CHECK(row.reason == "it still rises with the step");
 }
 
 TEST_CASE("asks: seeds that know their own intervals fall with the root of their number") {

@@ -52,4 +52,44 @@ inline Answered answer_of(const StudyResults& results, const Json& ask) {
   return answer_asks({ask_of(ask, 1)}, Evidence(choices), {}).all.front().second;
 }
 
+/// How many random tables a law is tried on.
+inline constexpr int tries = 2000;
+
+inline double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+/// Methods with random limits near each other, and random errors in the step.
+inline Made random_methods(std::mt19937& random, std::size_t levels) {
+  Made made;
+  synthetic::Choice mass{"mass", {}};
+  std::vector<double> truths;
+  for (std::size_t k = 0; k < levels; ++k) {
+    mass.levels.push_back("m" + std::to_string(k));
+    truths.push_back(uniform(random, 0.5, 1.5));
+  }
+  made.choices = {mass};
+  const std::size_t steps = 3 + random() % 3;
+  made.steps.clear();
+  for (std::size_t k = 0; k < steps; ++k) made.steps.push_back(4e-3 * std::pow(0.5, static_cast<double>(k)));
+  made.truth = [truths](const std::vector<std::size_t>& at) { return truths[at[0]]; };
+  // Errors that one term rules: what three sizes can show.
+  made.error = uniform(random, -0.3, 0.3);
+  made.order = uniform(random, 0.7, 2.5);
+  made.second = uniform(random, -0.1, 0.1) * made.error;
+  return made;
+}
+
+/// Values of two methods at four halved steps.
+inline StudyResults two_methods(const std::vector<double>& first, const std::vector<double>& second) {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  return synthetic::full_factorial(
+      made.choices, {8e-3, 4e-3, 2e-3, 1e-3},
+      [&](const std::vector<std::size_t>& at, double h) {
+        return (at[0] == 0 ? first : second)[static_cast<std::size_t>(std::lround(std::log2(8e-3 / h)))];
+      },
+      "impulse");
+}
+
 }  // namespace ricochet::asks

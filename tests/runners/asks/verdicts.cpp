@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <functional>
 #include <map>
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -14,33 +15,6 @@ using namespace ricochet;
 using namespace ricochet::asks;
 
 namespace {
-
-constexpr int tries = 2000;
-
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-/// Two methods with random limits near each other, and random errors in the step.
-Made random_methods(std::mt19937& random, std::size_t levels) {
-  Made made;
-  synthetic::Choice mass{"mass", {}};
-  std::vector<double> truths;
-  for (std::size_t k = 0; k < levels; ++k) {
-    mass.levels.push_back("m" + std::to_string(k));
-    truths.push_back(uniform(random, 0.5, 1.5));
-  }
-  made.choices = {mass};
-  const std::size_t steps = 3 + random() % 3;
-  made.steps.clear();
-  for (std::size_t k = 0; k < steps; ++k) made.steps.push_back(4e-3 * std::pow(0.5, static_cast<double>(k)));
-  made.truth = [truths](const std::vector<std::size_t>& at) { return truths[at[0]]; };
-  // Errors that one term rules: what three sizes can show.
-  made.error = uniform(random, -0.3, 0.3);
-  made.order = uniform(random, 0.7, 2.5);
-  made.second = uniform(random, -0.1, 0.1) * made.error;
-  return made;
-}
 
 TEST_CASE("asks: what is refused is left out of an effect, and one without a limit is as sure as both its levels") {
   // Levels agree within a thousandth; of the second scheme the third mass is refused.
@@ -205,112 +179,6 @@ TEST_CASE("asks: an effect is as large as asked, or smaller, in truth") {
   CHECK(no > tries / 10);
 }
 
-TEST_CASE("asks: what is ranked apart is apart in truth") {
-  std::mt19937 random(3);
-  std::size_t apart = 0;
-  for (int k = 0; k < tries; ++k) {
-    const Made made = random_methods(random, 2 + random() % 4);
-    const StudyResults results = made.results();
-    const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
-    double before = INFINITY;
-    double group_least = INFINITY;
-    std::string place;
-    for (const VerdictRow& row : answered.rows) {
-      const double truth = made.truth({static_cast<std::size_t>(row.level.back() - '0')});
-      if (row.verdict != place) {
-        if (!place.empty()) ++apart;
-        before = group_least;
-        group_least = INFINITY;
-        place = row.verdict;
-      }
-      INFO(answered.sentence << "\n" << row.level << " " << truth << " after " << before);
-      CHECK(truth <= before);
-      group_least = std::min(group_least, truth);
-    }
-  }
-  CHECK(apart > tries);
-}
-
-TEST_CASE("asks: a wide interval is told apart from nothing that it reaches") {
-  std::mt19937 random(11);
-  std::size_t apart = 0;
-  for (int k = 0; k < tries / 2; ++k) {
-    const Made made = random_methods(random, 4);
-    StudyResults results = made.results();
-    // Each method errs in its own way.
-    std::map<std::string, double> errors;
-    for (CaseRecord& record : results.cases) {
-      const std::string name = record.axes[0].second.get<std::string>();
-      if (!errors.contains(name)) errors[name] = uniform(random, -0.5, 0.5);
-      const double part = std::pow(record.axes[1].second.get<double>() / made.steps.front(), made.order);
-      record.measures[0].second = made.truth({static_cast<std::size_t>(name.back() - '0')}) * (1 + errors[name] * part);
-    }
-    const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
-    for (std::size_t a = 0; a < answered.rows.size(); ++a)
-      for (std::size_t b = a + 1; b < answered.rows.size(); ++b) {
-        const VerdictRow &one = answered.rows[a], &other = answered.rows[b];
-        if (one.verdict == other.verdict) continue;
-        const auto truth = [&](const VerdictRow& row) {
-          return made.truth({static_cast<std::size_t>(row.level.back() - '0')});
-        };
-        INFO(answered.sentence << "\n" << one.level << " " << *one.low << ", " << other.level << " " << *other.high);
-        CHECK(truth(one) > truth(other));
-        ++apart;
-      }
-  }
-  CHECK(apart > tries / 2);
-}
-
-TEST_CASE("asks: what the same draws move alike is ranked by its differences, and rarely against the truth") {
-  Made made;
-  made.choices = {{"mass", {"m0", "m1", "m2"}}, {seed_axis, {"1", "2", "3", "4"}}};
-  const auto rank = [&] { return answer_of(made.results(), {{"rank", "impulse"}, {"over", "mass"}}); };
-  made.truth = [](const std::vector<std::size_t>& at) { return 1 + 0.1 * static_cast<double>(at[0]); };
-  made.error = 0.01;
-  made.scatter = 0.2;
-  const Answered alike = rank();
-  INFO(alike.sentence);
-  CHECK(alike.verdict == "told apart");
-  CHECK(*alike.rows[0].low < *alike.rows[1].high);
-  CHECK(alike.rows[0].level == "m2");
-  CHECK(alike.rows[0].reason == "by its difference from the next at equal steps and seeds");
-  // Draws of their own: with equal truths an order is told by chance, of three pairs each in one of twenty.
-  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
-  made.scatter = 0;
-  made.chance = 0.1;
-  int told = 0;
-  for (made.first_seed = 1; made.first_seed <= 200; ++made.first_seed) told += rank().verdict != "not told apart";
-  CHECK(told <= 20);
-}
-
-TEST_CASE("asks: first in all combinations is first in each") {
-  std::mt19937 random(12);
-  std::size_t all_told = 0;
-  for (int k = 0; k < tries / 4; ++k) {
-    Made made = random_methods(random, 3);
-    made.choices.push_back({"contact", {"a", "b", "c"}});
-    const auto truth = made.truth;
-    std::vector<double> factors;
-    for (int c = 0; c < 9; ++c) factors.push_back(uniform(random, 0.9, 1.1));
-    made.truth = [=](const std::vector<std::size_t>& at) { return truth({at[0]}) * factors[3 * at[0] + at[1]]; };
-    const Answered answered = answer_of(made.results(), {{"rank", "impulse"}, {"over", "mass"}});
-    std::set<std::size_t> firsts;
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::size_t best = 0;
-      for (std::size_t m = 1; m < 3; ++m)
-        if (made.truth({m, c}) > made.truth({best, c})) best = m;
-      firsts.insert(best);
-    }
-    INFO(answered.sentence);
-    if (answered.sentence.find("the same first in all 3") != std::string::npos) {
-      CHECK(firsts.size() == 1);
-      ++all_told;
-    }
-    if (answered.verdict == "turned round") CHECK(firsts.size() > 1);
-  }
-  CHECK(all_told > tries / 100);
-}
-
 TEST_CASE("asks: a method without any value is neither always nor never") {
   std::mt19937 random(13);
   Made made = random_methods(random, 2);
@@ -407,19 +275,6 @@ TEST_CASE("asks: without a threshold is always, never or not told, and overlappi
   CHECK(answered.sentence.find("never") != std::string::npos);
   CHECK(answered.sentence.find("differ") == std::string::npos);
   CHECK(answered.sentence.find("no threshold") == std::string::npos);
-}
-
-TEST_CASE("asks: a ranking tells the most frequent order first, and where it is turned round") {
-  Made made;
-  made.choices = {{"mass", {"m0", "m1"}}, {"time", {"t0", "t1", "t2"}}};
-  made.truth = [](const std::vector<std::size_t>& at) { return at[1] == 0 ? 2.0 - at[0] : 1.0 + at[0]; };
-  made.error = 0.001;
-  const Answered answered = answer_of(made.results(), {{"rank", "impulse"}, {"over", "mass"}});
-  INFO(answered.sentence);
-  CHECK(answered.verdict == "turned round");
-  CHECK(answered.passes == Verdict::no);
-  CHECK(answered.sentence.find("t1") != std::string::npos);
-  CHECK(answered.sentence.find("m0 is first with t0") != std::string::npos);
 }
 
 TEST_CASE("asks: a case stands behind a verdict once, whatever the number of its stops") {
