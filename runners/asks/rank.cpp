@@ -99,9 +99,11 @@ class Apart {
     return out;
   }
 
-  /// Which of a group is told from none of the others, where these are told apart without it.
+  /// Which of a group is told from none of the others, three at least, where these are told apart without it. Of two
+  /// others it is a neighbour of both.
   std::optional<std::size_t> aside(const std::vector<std::size_t>& group) const {
-    if (group.size() > most_paired) return std::nullopt;
+    constexpr std::size_t fewest = 4;
+    if (group.size() < fewest || group.size() > most_paired) return std::nullopt;
     for (const std::size_t one : group) {
       if (std::any_of(group.begin(), group.end(),
                       [&](std::size_t other) { return above(one, other) || above(other, one); }))
