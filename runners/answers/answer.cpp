@@ -75,6 +75,15 @@ const TableType<MeasureLimit>& limits_type() {
   return all;
 }
 
+namespace {
+
+/// What a method has on an axis: nothing on that of its draws.
+Cell of_method(const CaseRecord& record, const std::string& column) {
+  return column == seed_axis ? Cell() : axis(record, column);
+}
+
+}  // namespace
+
 Table limits_table(const Choices& study, const std::vector<std::string>& measures) {
   const StudyResults& results = study.results();
   const TableType<MeasureLimit>& type = limits_type();
@@ -106,10 +115,12 @@ Table limits_table(const Choices& study, const std::vector<std::string>& measure
       row.mesh_moves = move(method->mesh);
       row.steps = sizes(method->step);
       row.meshes = sizes(method->mesh);
-      row.method = study.label(method->first());
+      row.method = study.label(method->first(), without(study.choices(), {seed_axis}));
       row.tier = tier;
       row.truth = finite(limits.words.truth, factor);
-      add_row(table, axes_of(method->first(), study.columns()), type.rows.row(row));
+      Row axes;
+      for (const std::string& column : study.columns()) axes.push_back(of_method(method->first(), column));
+      add_row(table, std::move(axes), type.rows.row(row));
     }
   }
   return table;
@@ -171,7 +182,7 @@ Table differences_table(const Choices& study, const std::vector<std::string>& me
         Row row = {effect.choice, measure};
         for (const std::string& column : study.columns()) {
           const bool of_choice = std::find(own.begin(), own.end(), column) != own.end();
-          row.push_back(of_choice ? Cell() : axis(*one.combination, column));
+          row.push_back(of_choice ? Cell() : of_method(*one.combination, column));
         }
         for (Cell cell : {Cell(one.levels), Cell(100 * one.difference), Cell(finite(one.uncertainty, 100)),
                           Cell(one.most), Cell(one.least), Cell(word(one.matters()))})

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/measure/statistics/draws.hpp>
+#include <set>
 
 #include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
@@ -95,7 +97,7 @@ Errors errors_of(const Cases& cases) {
     if (sticks_and_slips(*record)) return Errors::saw_toothed;
     if (!count) continue;
     if (*count > 0 && !measure(*record, contact_steps_measure)) return Errors::saw_toothed;
-    const auto [met, fresh] = impacts.emplace(axis(*record, "seed").text(), *count);
+    const auto [met, fresh] = impacts.emplace(axis(*record, seed_axis).text(), *count);
     if (met->second != *count) return Errors::saw_toothed;
   }
   return Errors::smooth;
@@ -103,10 +105,42 @@ Errors errors_of(const Cases& cases) {
 
 namespace {
 
+/// Values by step and elements, each by its seed.
+using Draws = std::map<std::pair<double, double>, std::map<std::string, double>>;
+
+/// Their means over the seeds that all sizes have, where there are such.
+std::map<std::pair<double, double>, double> means_of(const Draws& draws) {
+  std::set<std::string> common;
+  for (const auto& [size, values] : draws)
+    for (const auto& [seed, value] : values)
+      if (std::all_of(draws.begin(), draws.end(), [&](const auto& one) { return one.second.contains(seed); }))
+        common.insert(seed);
+  std::map<std::pair<double, double>, double> out;
+  for (const auto& [size, values] : draws) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const auto& [seed, value] : values) {
+      if (!common.empty() && !common.contains(seed)) continue;
+      sum += value;
+      ++count;
+    }
+    out[size] = sum / static_cast<double>(count);
+  }
+  return out;
+}
+
+/// Half the 95 % interval of a mean over seeds; of one seed, what the case says.
+double half_of(const std::map<std::string, double>& values, const CaseRecord& finest, const std::string& measure_of) {
+  std::vector<double> all;
+  for (const auto& [seed, value] : values) all.push_back(value);
+  if (const auto half = half_interval(all)) return *half;
+  return measure(finest, "confidence." + measure_of).value_or(0);
+}
+
 /// The limit of a method whose `grid` and `done` are filled, at its finest case. `share`: its values are shares, whose
 /// floor is round-off of 1. `coarser`: values on other meshes, in modes.
 void find_limit(const Choices& study, const MeasureWords& words, bool share, const std::vector<Valued>& coarser,
-                Method& method) {
+                const Draws& draws, Method& method) {
   const auto& best = *std::max_element(method.done.begin(), method.done.end(), [&](const Valued& a, const Valued& b) {
     return study.finer(*b.record, *a.record);
   });
@@ -129,7 +163,7 @@ void find_limit(const Choices& study, const MeasureWords& words, bool share, con
     for (auto* one : {&method.step, &method.mesh})
       if (*one) bound_growth(**one, *most);
   method.limit = combined(method.step, method.mesh);
-  method.half = measure(*best.record, "confidence." + words.measure).value_or(0);
+  method.half = half_of(draws.at({h, N}), *best.record, words.measure);
   method.gains = energy_kept(words, *best.record).value_or(0) > gains_above;
   if (method.limit) widen(*method.limit, method.half);
   // Of modes on several meshes, what the nearest coarser mesh says otherwise.
@@ -154,11 +188,13 @@ MeasureLimits limits_of(const Choices& study, const std::string& name, bool cons
   }
   const bool share = out.words.factor != 1 || out.words.scale == "1" || out.words.scale == "energy_brought_in";
   InOrderMet<std::string, Cases> groups;
-  for (const CaseRecord* record : cases) groups[study.key(*record)].push_back(record);
+  const std::vector<std::string> columns = without(study.columns(), {seed_axis});
+  for (const CaseRecord* record : cases) groups[study.key(*record, columns)].push_back(record);
   for (auto& [key, members] : std::move(groups).list()) {
     Method method;
     method.cases = members;
     std::vector<Valued> coarser;
+    Draws draws;
     if (without_limit(study, members, name)) members.clear();
     for (const CaseRecord* record : members) {
       if (record->status != Status::done) continue;
@@ -169,9 +205,10 @@ MeasureLimits limits_of(const Choices& study, const std::string& name, bool cons
         continue;
       }
       method.done.push_back({record, *value});
-      method.grid[{step_or_one(study, *record), elements_or_one(study, *record)}] = *value;
+      draws[{step_or_one(study, *record), elements_or_one(study, *record)}][study.text(*record, seed_axis)] = *value;
     }
-    if (!method.done.empty()) find_limit(study, out.words, share, coarser, method);
+    method.grid = means_of(draws);
+    if (!method.done.empty()) find_limit(study, out.words, share, coarser, draws, method);
     out.methods.push_back(std::move(method));
   }
   std::vector<Limit*> limits;
@@ -304,7 +341,8 @@ std::vector<ChoiceEffect> choice_effects(const Choices& study, const MeasureLimi
   // One column of a choice, where that is asked for.
   const bool part = study.varies(study.asked()) && axis_role(study.asked()) != study.asked();
   if (part) add(study.asked(), {study.asked()});
-  for (const std::string& choice : study.choices()) add(choice, study.columns_of(choice));
+  for (const std::string& choice : study.choices())
+    if (choice != seed_axis) add(choice, study.columns_of(choice));
   return out;
 }
 

@@ -22,13 +22,14 @@ struct Valued {
 
 /// One method, what it gave at each step and mesh, and what that comes to.
 struct Method {
-  Cases cases;                                       ///< all, whatever became of them
-  std::vector<Valued> done;                          ///< those with a value
-  const CaseRecord* finest = nullptr;                ///< finest mesh, then finest step, with a value
-  std::optional<Limit> step, mesh, limit;            ///< along each refinement at the finest of the other; over both
-  double half = 0;                                   ///< half the interval of the finest value itself
-  bool gains = false;                                ///< of a measure of energy: whether it makes energy
-  std::map<std::pair<double, double>, double> grid;  ///< by step and elements (1 where there is none)
+  Cases cases;                             ///< all, whatever became of them
+  std::vector<Valued> done;                ///< those with a value
+  const CaseRecord* finest = nullptr;      ///< finest mesh, then finest step, with a value
+  std::optional<Limit> step, mesh, limit;  ///< along each refinement at the finest of the other; over both
+  double half = 0;                         ///< half the interval of the finest value itself, or of its mean
+  bool gains = false;                      ///< of a measure of energy: whether it makes energy
+  /// By step and elements (1 where there is none). Of random loads the mean over their seeds.
+  std::map<std::pair<double, double>, double> grid;
 
   const CaseRecord& first() const { return *cases.front(); }
   std::optional<double> at(double h, double elements) const;
@@ -59,7 +60,8 @@ bool without_limit(const Choices& study, const Cases& cases, const std::string& 
 /// What no value of it exceeds: `most`, and 1 of a share of the energy that was brought in.
 std::optional<double> bound_of(const MeasureWords& words, bool share);
 
-/// Of the cases given, all of one study. `conservative`: the truth of the measure and its direction hold.
+/// Of the cases given, all of one study; seeds are draws of one method. `conservative`: the truth of the measure and
+/// its direction hold.
 MeasureLimits limits_of(const Choices& study, const std::string& measure, bool conservative, const Cases& cases);
 
 /// Whether loads in time, supports or stops in motion worked in a case: steady loads have a potential.

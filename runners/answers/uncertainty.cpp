@@ -52,11 +52,10 @@ void widen(std::optional<double>& gap, const std::optional<Limit>& limit) {
 std::optional<Spread> spread_of(const MeasureLimits& limits) {
   std::optional<Spread> out;
   for (const Method* method : limits.with_limit()) {
-    const auto value = scaled_value(limits.words, *method->finest);
-    if (!value) continue;
-    if (!out) out = Spread{*value, *value, *value, 0, false, {}, {}, {}};
-    out->least = std::min(out->least, *value);
-    out->largest = std::max(out->largest, *value);
+    const double value = method->limit->value;
+    if (!out) out = Spread{value, value, value, 0, false, {}, {}, {}};
+    out->least = std::min(out->least, value);
+    out->largest = std::max(out->largest, value);
     ++out->methods;
     widen(out->step, method->step);
     widen(out->mesh, method->mesh);
@@ -139,7 +138,8 @@ const TableType<StopRange>& uncertainty_type() {
         .add({"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
              &StopRange::step)
         .add({"mesh_gap", "", "The same of the mesh."}, &StopRange::mesh)
-        .add({"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
+        .add({"sampling", "",
+              "Half the 95 % interval of a mean over seeds, or over the parts of the window; the largest."},
              &StopRange::sampling)
         .add({"low", "",
               "The least less the sum of the three, 0 where none is below 0; empty where that of the step is not "
@@ -158,7 +158,7 @@ const TableType<StopRange>& uncertainty_type() {
 
 bool scene_varies(const Choices& study) {
   return std::any_of(study.varying().begin(), study.varying().end(), [](const std::string& column) {
-    return is_of_scene(column) && column != "march" && column != "seed";
+    return is_of_scene(column) && column != "march" && column != seed_axis;
   });
 }
 

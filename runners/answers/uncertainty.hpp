@@ -23,8 +23,8 @@ const TableType<StopRange>& uncertainty_type();
 ///     d = step gap + mesh gap + sampling,     interval [least − d, largest + d]
 ///
 /// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
-/// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
-/// Where the scene itself varies its levels are among the cases.
+/// sampling half the 95 % interval of a mean over seeds, or over the parts of a window. The interval is blank of a
+/// single step. Where the scene itself varies its levels are among the cases.
 Table uncertainty_table(const Choices& study);
 
 /// Whether cases differ in more than methods, their refinements and draws: then a range over all is of no one scene.

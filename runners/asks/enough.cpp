@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <ricochet/measure/statistics/draws.hpp>
 
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"

@@ -13,9 +13,6 @@
 
 namespace ricochet::asks {
 
-/// The axis whose levels are draws of one random load: they widen intervals and are no methods.
-inline constexpr const char* seed_axis = "seed";
-
 /// What is known of a number: value ± u, u = step + mesh + sampling.
 struct Estimate {
   double value = 0;                  ///< at the finest step and mesh; of seeds their mean
@@ -207,10 +204,5 @@ Limits limits_at(const std::map<Size, std::map<std::string, double>>& values, co
 Estimate estimate_of(const std::map<Size, std::map<std::string, double>>& values,
                      const std::map<Size, std::map<std::string, double>>& halves, const Size& finest,
                      const Limits& limits, bool has_step);
-
-/// Half the 95 % interval of the mean of draws, t₀.₉₇₅(n−1) s/√n; nothing of fewer than two.
-std::optional<double> half_interval(const std::vector<double>& draws);
-/// The same over the standard deviation s of n ≥ 2 draws.
-double half_interval_over_scatter(std::size_t n);
 
 }  // namespace ricochet::asks

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <ricochet/measure/statistics/draws.hpp>
 #include <set>
 
 #include "runners/answers/set_names.hpp"

@@ -63,6 +63,8 @@ std::vector<std::pair<Role, const MethodChoice*>> methods_of(const StudyCase& st
 
 /// The column of mesh.residual, whose own name is that of a column of the energy ledger.
 inline constexpr const char* residual_axis = "mode_residual";
+/// The axis whose levels are draws of one random load: they widen intervals and are no methods.
+inline constexpr const char* seed_axis = "seed";
 
 struct Study {
   std::string name, question, kind;

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <map>
+#include <ricochet/measure/statistics/draws.hpp>
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <set>
