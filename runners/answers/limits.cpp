@@ -75,9 +75,13 @@ bool without_limit(const Choices& study, const Cases& cases, const std::string& 
   return finest && is_without_limit(why_left_out(*finest, name));
 }
 
-std::optional<double> bound_of(const MeasureWords& words, bool share) {
+std::optional<double> bound_of(const MeasureWords& words, bool share, const Cases& cases) {
   if (words.most) return words.most;
-  return share && words.scale == "energy_brought_in" ? std::optional(1.0) : std::nullopt;
+  if (share) return words.scale == "energy_brought_in" ? std::optional(1.0) : std::nullopt;
+  std::optional<double> least;
+  for (const CaseRecord* record : cases)
+    if (const auto scale = measure(*record, words.scale)) least = std::min(least.value_or(*scale), std::abs(*scale));
+  return least;
 }
 
 namespace {
@@ -159,7 +163,7 @@ void find_limit(const Choices& study, const MeasureWords& words, bool share, con
   const Errors errors = errors_of(cases);
   method.step = limit_of(by_step, floor, words.truth, errors);
   method.mesh = limit_of(by_mesh, floor, {}, errors);
-  if (const auto most = bound_of(words, share))
+  if (const auto most = bound_of(words, share, cases))
     for (auto* one : {&method.step, &method.mesh})
       if (*one) bound_growth(**one, *most);
   method.limit = combined(method.step, method.mesh);

@@ -57,8 +57,9 @@ std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& 
 /// Whether the finest of these cases says that no step approaches the measure: what coarser ones have is no limit then.
 bool without_limit(const Choices& study, const Cases& cases, const std::string& measure);
 
-/// What no value of it exceeds: `most`, and 1 of a share of the energy that was brought in.
-std::optional<double> bound_of(const MeasureWords& words, bool share);
+/// What no value of it exceeds: `most`, and 1 of a share of the energy that was brought in. Of what has a scale, as the
+/// tip at the end has the largest tip, what does not exceed that of any of these cases does not grow without bound.
+std::optional<double> bound_of(const MeasureWords& words, bool share, const Cases& cases);
 
 /// Of the cases given, all of one study; seeds are draws of one method. `conservative`: the truth of the measure and
 /// its direction hold.

@@ -505,7 +505,7 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor, point.errors))
                                   : std::nullopt);
-    if (const auto most = answers::bound_of(words, share); most && limits.back())
+    if (const auto most = answers::bound_of(words, share, point.behind); most && limits.back())
       for (auto* one : {&limits.back()->step, &limits.back()->mesh})
         if (*one) bound_growth(**one, *most);
   }

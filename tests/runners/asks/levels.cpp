@@ -865,3 +865,21 @@ TEST_CASE("tables of limits: a single step leaves no interval and no verdict") {
     made.steps = {4e-3, 2e-3, 1e-3, 5e-4};
   }
 }
+
+TEST_CASE("asks: what stays within the motion of every step does not grow without bound") {
+  StudyResults results = synthetic::full_factorial(
+      {{"mass", {"m0"}}}, {4e-3, 2e-3, 1e-3}, [](const std::vector<std::size_t>&, double h) { return -0.001 / h; },
+      "tip_displacement_end");
+  const Json ask = {{"value", "tip_displacement_end"}};
+  const auto with_largest = [&](double largest) {
+    for (CaseRecord& record : results.cases) {
+      std::erase_if(record.measures, [](const auto& one) { return one.first == "largest_tip_displacement"; });
+      record.measures.emplace_back("largest_tip_displacement", largest);
+    }
+    return answer_of(results, ask).rows.front();
+  };
+  CHECK(with_largest(0.5).reason == "grows without bound");
+  const VerdictRow held = with_largest(1.2);
+  CHECK(held.reason == "still falls with the step");
+  CHECK((*held.low < *held.value && *held.value <= *held.high));
+}
