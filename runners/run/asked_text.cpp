@@ -152,9 +152,14 @@ nlohmann::ordered_json rows_as_json(const Table& table) {
 }
 
 nlohmann::ordered_json asked_json(const AnalysedResults& results) {
+  const report::AskedAnswers asked = asked_answers(results);
+  Json aside = Json::array();
+  for (const report::AskedPart& part : asked.parts)
+    for (const std::string& sentence : part.aside) aside.push_back({{"ask", part.number}, {"sentence", sentence}});
   return {{"question", results.question},
-          {"first", results.asked.first},
-          {"verdicts", rows_as_json(asks::verdicts_table(results.asked))}};
+          {"first", asked.first},
+          {"verdicts", rows_as_json(asks::verdicts_table(results.asked))},
+          {"aside", std::move(aside)}};
 }
 
 }  // namespace ricochet

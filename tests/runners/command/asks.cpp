@@ -76,6 +76,11 @@ TEST_CASE("run says each sentence above its rows, twelve at most, and a required
   CHECK(json.at("verdicts").at(0).at("value").is_null());
   CHECK(json.at("verdicts").at(1).at("value").is_number());
   CHECK_THAT(ran.out, Contains(json.at("verdicts").at(0).at("sentence").get<std::string>()));
+  // What is doubtful, left out or missing is told to programs, too.
+  REQUIRE_FALSE(json.at("aside").empty());
+  for (const Json& one : json.at("aside")) CHECK_THAT(ran.out, Contains(one.at("sentence").get<std::string>()));
+  CHECK(json.at("aside").back() == Json({{"ask", 2}, {"sentence", "Ask 2 requires a yes and has none."}}));
+  for (const Json& one : json.at("first")) CHECK_THAT(ran.out, Contains(one.get<std::string>()));
   CHECK(say(here, "report out out --json").code == 2);
   // A page of several folders is written whatever their asks say.
   std::filesystem::copy(here / "out", here / "other", std::filesystem::copy_options::recursive);
