@@ -138,7 +138,7 @@ class CheapestAsk {
     else if (unknown)
       out.reason = "a finer size has no error";
     else
-      out.reason = "it ends at " + answers::percent_beside(*share(*out.best), within_);
+      out.reason = "its least error is " + answers::percent_beside(*share(*out.best), within_);
   }
 
   std::string level(const Reach& one) const { return study_.words(*one.cases.front(), study_.columns()); }

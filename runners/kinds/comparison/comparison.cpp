@@ -90,7 +90,7 @@ std::vector<Field> comparison_keys() {
   Field reference =
       methods("reference", Role::reference,
               "A reference, \"self\" (the method on finer steps and meshes) or a list, whose first counts; its gap to "
-              "the others enters the error floor.");
+              "the others, where less than the motion, enters the error floor.");
   reference.marched = true;
   Field errors = of_form(Field::Form::words, "errors", std::nullopt, "Errors.");
   errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());

@@ -175,7 +175,7 @@ class OrderAsk {
                               : fmt::format("{} of {} slopes agree", run.length, run.slopes.size()));
         else if (!run.beyond.empty())
           parts.push_back(fmt::format("{:.2f} once at finer sizes", run.beyond.front()));
-        if (run.stops_at) parts.push_back("the error ends at " + with_unit(*run.stops_at) + share);
+        if (run.stops_at) parts.push_back("the least error is " + with_unit(*run.stops_at) + share);
         if (const auto& declared = one.declared.order; refined == "step" && declared)
           parts.push_back(!one.declared.because.empty() ? one.declared.because
                           : std::abs(run.order - *declared) <= orders_agree
@@ -183,7 +183,7 @@ class OrderAsk {
                               : "the scheme declares " + fraction_text(*declared));
         break;
       case Run::stops:
-        parts.push_back("the error ends at " + with_unit(run.smallest) + share);
+        parts.push_back("the least error is " + with_unit(run.smallest) + share);
         break;
       case Run::does_not_fall:
         parts.push_back("the error does not fall: " + with_unit(run.last) + " at the finest");

@@ -113,7 +113,7 @@ TEST_CASE("an order ends where the errors do, and what follows no order has none
   CHECK(verdict("clean") == "clean");
   CHECK(*row_of(out, "clean").value == Approx(2));
   CHECK(verdict("level") == "clean");
-  CHECK_THAT(row_of(out, "level").reason, Contains("the error ends at 0.001 N s"));
+  CHECK_THAT(row_of(out, "level").reason, Contains("the least error is 0.001 N s"));
   for (const char* level : {"stays", "jumps"}) {
     CHECK(verdict(level) == "none");
     CHECK_FALSE(row_of(out, level).value);
@@ -158,7 +158,7 @@ TEST_CASE("the cheapest stays within the share at all finer steps", "[asks]") {
   CHECK(*out.rows[0].value == Approx(1.6e-3));
   CHECK(*out.rows[1].value == Approx(4e-3));
   CHECK(out.rows[2].verdict == "not there");
-  CHECK_THAT(out.rows[2].reason, Contains("it ends at 5 %"));
+  CHECK_THAT(out.rows[2].reason, Contains("its least error is 5 %"));
   CHECK_THAT(out.sentence, Contains("Chance at h = 0.0625 s") && Contains("rough never"));
   CHECK(out.passes == asks::Verdict::yes);
 }
