@@ -65,9 +65,12 @@ def tamper(path, dice):
     base.execute("pragma foreign_keys=off")
     rows = [r[0] for r in base.execute("select name from sqlite_master where type='table'")]
     table = dice.choice([name for name in rows if base.execute(f"select count(*) from {name}").fetchone()[0]])
-    columns = [r[1:3] for r in base.execute(f"pragma table_info({table})")]
-    column, kind = dice.choice(columns)
-    row = base.execute(f"select rowid from {table} order by random() limit 1").fetchone()[0]
+    described = base.execute(f"pragma table_info({table})").fetchall()
+    column, kind = dice.choice([r[1:3] for r in described])
+    # Tables of rows lie in their key.
+    key = [r[1] for r in described if r[5]] or ["rowid"]
+    row = base.execute(f"select {', '.join(key)} from {table} order by random() limit 1").fetchone()
+    that = " and ".join(f"{one} is ?" for one in key)
     value = {"TEXT": dice.choice(EVIL + ['[1, {"a": [null]}]', "done", '"text"']),
              "INTEGER": dice.choice([-1, 0, 7, 2**31, 2**62]),
              "REAL": dice.choice([5e-324, -0.0, 1e308, 0.1, "text"]),
@@ -75,10 +78,10 @@ def tamper(path, dice):
     what = f"{table}.{column} = {value!r}"
     try:
         if dice.random() < 0.15:
-            base.execute(f"delete from {table} where rowid = ?", (row,))
+            base.execute(f"delete from {table} where {that}", row)
             what = f"a row of {table} deleted"
         else:
-            base.execute(f"update {table} set {column} = ? where rowid = ?", (value, row))
+            base.execute(f"update {table} set {column} = ? where {that}", (value, *row))
     except sqlite3.Error:
         what = "nothing"
     base.commit()

@@ -13,8 +13,9 @@ namespace {
 
 struct Ending {
   std::string status, reason;
-  bool done = false;
-  std::vector<const CaseRecord*> cases;
+  bool done = false, alike = true;  // whether the reason is that of each, or has the numbers of the first
+  std::vector<const CaseRecord*> cases = {};
+  std::string said() const { return (alike ? "" : "the first: ") + reason; }
 };
 
 /// How cases ended, by status and reason; those that differ in numbers alone are one.
@@ -24,7 +25,9 @@ std::vector<Ending> endings(const Cases& cases) {
     const std::string status = record->partial ? "running" : word(record->status);
     const bool done = !record->partial && record->status == Status::done;
     Ending& ending = out[done ? status : ending_key(*record)];
-    if (ending.cases.empty()) ending = {status, done ? "" : record->reason(), done, {}};
+    const std::string reason = done ? "" : record->reason();
+    if (ending.cases.empty()) ending = {.status = status, .reason = reason, .done = done};
+    ending.alike = ending.alike && ending.reason == reason;
     ending.cases.push_back(record);
   }
   std::vector<Ending> list;
@@ -45,13 +48,14 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
     row.value = static_cast<double>(one.cases.size());
     row.unit = "1";
     row.verdict = one.status;
-    row.reason = one.reason;
+    row.reason = one.said();
     row.cases = one.cases.size();
     out.rows.push_back(std::move(row));
     if (one.done)
       done += one.cases.size();
     else {
-      others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, short_reason(one.reason)));
+      others.push_back(fmt::format("{} {} ({}{})", one.cases.size(), one.status,
+                                   one.alike ? "" : "the first: ", short_reason(one.reason)));
       by_status[one.status] += one.cases.size();
       wrong += went_wrong(*one.cases.front()) ? one.cases.size() : 0;
     }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "runners/report/ask_figure.hpp"
 #include "runners/run/analysed_results.hpp"
@@ -57,23 +58,34 @@ std::string address_of(const fs::path& file) {
   return out;
 }
 
-/// A figure's name as that of a file.
-std::string file_name(const std::string& name, std::set<std::string>& taken) {
+}  // namespace
+
+std::string figure_file_name(const std::string& name, std::set<std::string>& taken) {
+  constexpr std::string_view sign = "−";
   std::string out;
-  for (const char c : name) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '.';
-    if (plain)
-      out += c;
-    else if (!out.empty() && out.back() != '-')
-      out += '-';
+  const auto gap = [&] {
+    if (!out.empty() && out.back() != '-') out += '-';
+  };
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto letter = [&](std::size_t k) {
+      return k < name.size() && std::isalnum(static_cast<unsigned char>(name[k])) != 0;
+    };
+    const bool hyphen = name[i] == '-' && letter(i + 1) && (i == 0 || !letter(i - 1));
+    if (hyphen || name.compare(i, sign.size(), sign) == 0) {
+      gap();
+      out += "minus";
+      i += hyphen ? 0 : sign.size() - 1;
+    }
+    if (letter(i) || name[i] == '.')
+      out += name[i];
+    else
+      gap();
   }
   while (!out.empty() && out.back() == '-') out.pop_back();
   std::string own = out;
   for (int k = 2; !taken.insert(own).second; ++k) own = fmt::format("{}-{}", out, k);
   return own;
 }
-
-}  // namespace
 
 std::size_t write_figures(const fs::path& report, const fs::path& folder) {
   const TemporaryFolder profile("figures");
@@ -94,7 +106,7 @@ std::size_t write_figures(const fs::path& report, const fs::path& folder) {
   make_folder(folder);
   std::set<std::string> taken;
   for (const auto& figure : figures) {
-    const fs::path file = folder / file_name(figure.at("name"), taken);
+    const fs::path file = folder / figure_file_name(figure.at("name"), taken);
     write_file(file.string() + ".svg", figure.at("svg").get_ref<const std::string&>());
     write_file(file.string() + ".csv", figure.at("csv").get_ref<const std::string&>());
   }

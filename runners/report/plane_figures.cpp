@@ -27,10 +27,10 @@ class PlaneFigure : public AskFigure {
     std::optional<double> floor = {};
   };
 
-  /// The axes, drawn with legend, ticks, titles and lines `at`.
+  /// The axes, drawn with legend, ticks and titles.
   struct Frame {
     FigureAxis x, y;
-    double top = 0, bottom = 0, end = 0;
+    double left = 0, top = 0, bottom = 0, end = 0;
   };
   /// `aside`: what stands beside its place of x, to each side. `labels`: what tells the series apart.
   Frame frame(const std::vector<std::string>& labels, const std::vector<double>& xs, const std::vector<double>& ys,
@@ -55,9 +55,8 @@ class PlaneFigure : public AskFigure {
       draw_.text(longest + 2, y.at(value) + 4, words, "tick", "end");
     }
     ticks(x, top, bottom);
-    place_lines(y, longest + gap);
     const double end = title(across, bottom + line_height, log_x);
-    return {x, y, top, bottom, above ? end : legend(labels, end)};
+    return {x, y, longest + gap, top, bottom, above ? end : legend(labels, end)};
   }
 
   std::string plane(const std::vector<Series>& all, const std::vector<std::pair<double, double>>& between,
@@ -89,6 +88,7 @@ class PlaneFigure : public AskFigure {
     const Frame in = frame(names, xs, ys, across, upwards, log_x, log_y, apart * others / 2 + dot + 2);
     for (const auto& [from, to] : between)
       draw_.box(in.x.at(from), in.top, in.x.at(to) - in.x.at(from), in.bottom - in.top, "between");
+    place_lines(in);
     for (std::size_t k = 0; k < all.size(); ++k)
       draw(all[k], k, apart * (static_cast<double>(k) - others / 2), in.x, in.y);
     return draw_.svg(in.end, upwards, true);
@@ -109,11 +109,11 @@ class PlaneFigure : public AskFigure {
   }
 
   /// Lines across at values, each labelled at its right end, below the line where one above is near.
-  void place_lines(const FigureAxis& y, double from) {
+  void place_lines(const Frame& in) {
     double last = INFINITY;
     for (const double value : at_) {
-      const double place = y.at(value);
-      draw_.line(from, place, width, place, "at");
+      const double place = in.y.at(value);
+      draw_.line(in.left, place, width, place, "at");
       const std::string words = label_at(value);
       const double base = std::min(place - 3, last - line_height);
       draw_.text(width - side / 2, base, words, "at", "end");

@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 // Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
 constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,
                  nearest_gap = 9, widest_gap = 44, tallest_nodes = 230, least_span = 36, points_span = 140,
-                 row_half = 62, damper_length = 44,
-                 narrow_letters = 21;  // as page.css has them
+                 row_half = 62, damper_length = 44, narrow_letters = 21, wide_letters = 12;  // as page.css has them
 constexpr std::size_t most_labelled = 12, most_unnamed = 4;
 
 /// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
@@ -99,7 +98,7 @@ class SceneDrawing {
         loads_(loads_of(scene_)),
         layout_(scene_.at("/files/layout")),
         narrow_(narrow),
-        label_(narrow ? Labels(narrow_letters, sketch_width) : Labels()) {
+        label_(narrow ? narrow_letters : wide_letters, sketch_width) {
     for (const auto& [name, body] : bodies_) {
       const Json* layout = bodies_.size() == 1 ? layout_ : body.at("/files/layout/bodies/" + name);
       layouts_.push_back(layout);

@@ -318,11 +318,9 @@ std::string Labels::operator()(double x, double y, const std::string& text, cons
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
   const double wide = letter * static_cast<double>(letters);
   double left = x - (*anchor == 'm' ? wide / 2 : *anchor == 'e' ? wide : 0);
-  if (width_ > 0) {
-    const double inside = std::max(0.0, std::min(left, width_ - wide));
-    x += inside - left;
-    left = inside;
-  }
+  const double inside = std::max(0.0, std::min(left, width_ - wide));
+  x += inside - left;
+  left = inside;
   const auto covers = [&](const Box& one) {
     return left - space < one.right && one.left < left + wide + space && std::abs(y - one.low) < height;
   };

@@ -27,8 +27,8 @@ std::string wall(double x, double from, double to, double side);
 /// The texts of a sketch: one that would cover another goes down (or up) until it does not.
 class Labels {
  public:
-  /// `size` of the letters, pixels; labels are moved to within a `width`, 0 for none.
-  explicit Labels(double size = 12, double width = 0) : scale_(size / 12), width_(width) {}
+  /// `size` of the letters, pixels; labels are moved to within a `width`.
+  Labels(double size, double width) : scale_(size / 12), width_(width) {}
   std::string operator()(double x, double y, const std::string& text, const char* anchor = "middle", double away = -1);
   /// From where to where they reach, with `from` and `to`, pixels.
   std::array<double, 2> reach(double from, double to) const;

@@ -1,17 +1,6 @@
 // A figure as a part of the page: heading, caption, choice of views, legend, and a place for each chart with its notes.
 {
   const {escape} = ricochet.format;
-  const shapes = {
-    circle: '<circle cx="15" cy="6" r="4"',
-    rect: '<rect x="11" y="2" width="8" height="8"',
-    roundRect: '<rect x="11" y="2" width="8" height="8"',
-    triangle: '<path d="M15 1 L20 10 L10 10 Z"',
-    arrow: '<path d="M15 1 L20 10 L10 10 Z"',
-    "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"',
-    cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"',
-    diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
-  };
-
   const mostEntries = 12;  // of each heading at first sight
   // Where a view or a list of them, `only`, is shown.
   const whereShown = ({only}) =>
@@ -39,8 +28,11 @@
           .map((entry) => {
             const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' +
                 (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
-            const look = entry.hollow ? ' fill="#ffffff" stroke-width="1.6" stroke="' : ' fill="',
-                  mark = shapes[entry.symbol] ? shapes[entry.symbol] + look + entry.colour + '"/>' : "";
+            const shape = ricochet.plot.shapes[entry.symbol], open = entry.hollow || entry.symbol === "cross",
+                  fill = open ? (entry.hollow ? "#ffffff" : "none") : entry.colour,
+                  mark = shape ? '<path transform="translate(15 6)" d="' + shape(4) + '" fill="' + fill + '"' +
+                (open ? ' stroke="' + entry.colour + '" stroke-width="1.6"' : "") + "/>" :
+                                 "";
             return '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' +
                 escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" +
                 escape(ricochet.shorten(entry.name, used)) + "</button>";

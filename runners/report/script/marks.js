@@ -2,6 +2,9 @@
 {
   const dashes = [[], [7, 4], [2, 3], [9, 3, 2, 3], [14, 5], [9, 3, 2, 3, 2, 3]];
   const symbols = ["circle", "rect", "triangle", "diamond", "roundRect", "arrow"];
+  // Of curve k: each symbol comes with each dash before a pair comes again.
+  const symbolOf = (k) => symbols[k % symbols.length];
+  const dashOf = (k) => dashes[(k + Math.floor(k / symbols.length)) % dashes.length];
 
   // A view of quantities x and y over one frame. `along`: hovering reads all curves at one x.
   const view = (x, y, xAxis, yAxis, along = false) => ({
@@ -46,10 +49,10 @@
     mark: "line",
     name,
     colour,
-    symbol: symbols[style % symbols.length],
+    symbol: symbolOf(style),
     size,
     width,
-    dash: dashes[style % dashes.length]
+    dash: dashOf(style)
   });
   // The same with hollow marks where a row says so.
   const hollowCurve = (one, rows, size, width) =>
@@ -145,8 +148,8 @@
     firstOfName,
     unseenZeros: "Exactly 0, which a logarithmic axis cannot show: ",
     ownScale: "This chart has its own scale: its values are over 4 times those of most others.",
-    dash: (k) => dashes[k % dashes.length],
-    svgDash: (k) => dashes[k % dashes.length].join(" "),
-    symbol: (k) => symbols[k % symbols.length],
+    dash: dashOf,
+    svgDash: (k) => dashOf(k).join(" "),
+    symbol: symbolOf,
   });
 }

@@ -621,6 +621,9 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
   }
   CHECK(asides() == std::vector<std::string>{
                         "Left out: 20 diverged, the first: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
+  const Answered ended = answer_of(results, {{"runs", true}});
+  CHECK(ended.rows[1].reason == "the first: step 7, t = 7 s: the energy 7 J passed the bound 2 J");
+  CHECK(ended.sentence == "4 of 24 cases run; 20 diverged (the first: step 7, t = 7 s).");
   for (CaseRecord& record : results.cases) {
     const std::string mass = record.axes[0].second.get<std::string>();
     if (mass == "a" || mass == "b") continue;

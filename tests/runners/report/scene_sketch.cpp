@@ -1,6 +1,7 @@
 #include "runners/report/scene_sketch.hpp"
 
 #include <catch2/catch.hpp>
+#include <regex>
 
 #include "runners/report/summary_page.hpp"
 #include "tests/runners/report/synthetic.hpp"
@@ -52,6 +53,20 @@ TEST_CASE("stops stand where they are, each with its gap", "[report]") {
   Scene one_sided = beam();
   one_sided["scene"]["stops"]["lower"] = nullptr;
   CHECK(count(report::scene_svg(one_sided), "class=\"stop\"") == count(svg, "class=\"stop\"") / 2);
+}
+
+TEST_CASE("the label of a stop at the tip ends within the drawing", "[report]") {
+  Scene study = beam();
+  study["scene"]["stops"] = Scene::parse(
+      R"([{"name": "never-touched-plate-far-away", "at": {"x": 1.5}, "lower": null, "upper": 0.5}, {"name": "b", "at": {"x": 0.5}, "lower": null, "upper": 0.001}])");
+  const std::string svg = report::scene_svg(study);
+  CHECK_THAT(svg, Contains("never-touched-plate-far-away 0.5 m"));
+  const std::regex label("<text x=\"([-0-9.]+)\" y=\"[-0-9.]+\" text-anchor=\"start\">([^<]*)<");
+  for (std::sregex_iterator one(svg.begin(), svg.end(), label), end; one != end; ++one) {
+    INFO((*one)[2]);
+    // Letters are six pixels wide in the mean.
+    CHECK(std::stod((*one)[1]) + 6 * static_cast<double>((*one)[2].length()) <= 640);
+  }
 }
 
 TEST_CASE("a sketch for a phone draws the same with larger words", "[report]") {
