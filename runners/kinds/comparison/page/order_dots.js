@@ -42,7 +42,7 @@
       ricochet.draw(
           out, ticks.map((row) => ({...row, text: "declared " + row.declared})), {x: "declared", y: "name"},
           ricochet.dot(declared, "#222222", "tick", 16, 2));
-      legend.push(ricochet.swatch(declared, "#222222"));
+      legend.push(ricochet.swatch(declared, "#222222", "tick"));
     }
     for (const [verdict, [colour, symbol]] of [...Object.entries(verdicts), [none, ["#56B4E9", "circle"]]]) {
       if (!rows.some((row) => row.verdict === verdict)) continue;

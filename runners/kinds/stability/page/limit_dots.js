@@ -52,7 +52,7 @@
           unlimited.map(
               (name) => ({name, end: out.xAxes[0].max, text: name + ": no limit within the steps of the study"})),
           {x: "end", y: "name"}, {...ricochet.dot(none, "#555555", "triangle-right", 10, 4), shift: [-6, 0]});
-      legend.push(ricochet.swatch(none, "#555555", "triangle"));
+      legend.push(ricochet.swatch(none, "#555555", "triangle-right"));
     }
     if (without.length && !arrows)
       out.notes.push("No limit within the steps of the study: " + view.describe(without, counted) + ".");
