@@ -116,9 +116,9 @@ using Draws = std::map<std::pair<double, double>, std::map<std::string, double>>
 std::map<std::pair<double, double>, double> means_of(const Draws& draws) {
   std::set<std::string> common;
   for (const auto& [size, values] : draws)
-    for (const auto& [seed, value] : values)
-      if (std::all_of(draws.begin(), draws.end(), [&](const auto& one) { return one.second.contains(seed); }))
-        common.insert(seed);
+    for (const auto& of_seed : values)
+      if (std::all_of(draws.begin(), draws.end(), [&](const auto& one) { return one.second.contains(of_seed.first); }))
+        common.insert(of_seed.first);
   std::map<std::pair<double, double>, double> out;
   for (const auto& [size, values] : draws) {
     double sum = 0;

@@ -379,15 +379,14 @@ std::optional<Evidence::Schemes> Evidence::schemes(const std::string& name,
 
 void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& name, const Schemes& varying,
                                bool shares) const {
-  const auto& [every, told, others] = varying;
-  Cases all = every;
+  Cases all = varying.all;
   // Those that have a limit, by its name.
   std::map<std::string, std::vector<Point>> peers;
   for (Point& point : points)
-    if (point.estimate && is_compliant(point)) peers[point.limit = key(point.first(), others) + '\n'];
-  std::erase_if(all, [&](const CaseRecord* one) { return !peers.contains(key(*one, others) + '\n'); });
-  for (Point& peer : alone(name, all, told, shares))
-    if (peer.estimate && is_compliant(peer)) peers[key(peer.first(), others) + '\n'].push_back(std::move(peer));
+    if (point.estimate && is_compliant(point)) peers[point.limit = key(point.first(), varying.others) + '\n'];
+  std::erase_if(all, [&](const CaseRecord* one) { return !peers.contains(key(*one, varying.others) + '\n'); });
+  for (Point& peer : alone(name, all, varying.told, shares))
+    if (peer.estimate && is_compliant(peer)) peers[key(peer.first(), varying.others) + '\n'].push_back(std::move(peer));
   for (Point& point : points)
     if (!point.limit.empty()) point.estimate = tested(point, peers[point.limit]);
   // What no other disproves tells the others where to look.
@@ -405,16 +404,15 @@ void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& na
 
 void Evidence::test_by_contact(std::vector<Point>& points, const std::string& name, const Schemes& varying,
                                bool shares) const {
-  const auto& [every, told, others] = varying;
   std::map<std::string, std::vector<Point*>> idle;
   for (Point& point : points)
-    if (is_idle(point, split_measure(name).second)) idle[key(point.first(), others)].push_back(&point);
+    if (is_idle(point, split_measure(name).second)) idle[key(point.first(), varying.others)].push_back(&point);
   if (idle.empty()) return;
-  Cases all = every;
-  std::erase_if(all, [&](const CaseRecord* one) { return !idle.contains(key(*one, others)); });
-  for (const Point& peer : alone(name, all, told, shares)) {
+  Cases all = varying.all;
+  std::erase_if(all, [&](const CaseRecord* one) { return !idle.contains(key(*one, varying.others)); });
+  for (const Point& peer : alone(name, all, varying.told, shares)) {
     if (!peer.estimate || peer.estimate->value == 0) continue;
-    for (Point* point : idle[key(peer.first(), others)]) {
+    for (Point* point : idle[key(peer.first(), varying.others)]) {
       point->of_untouched_stop = false;
       if (!point->estimate) continue;
       Estimate& own = *point->estimate;
