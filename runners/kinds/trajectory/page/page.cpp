@@ -1,5 +1,7 @@
 #include "runners/kinds/trajectory/page/page.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "runners/answers/limits.hpp"
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/uncertainty.hpp"
+#include "runners/asks/ask.hpp"
 #include "runners/kinds/trajectory/outputs.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
@@ -154,25 +157,28 @@ std::string summary_measures_html(const Choices& choices) {
     if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.first == one.first; }))
       all.push_back(std::move(one));
   std::vector<std::string> order;
-  if (const auto observed = results.study.find("observe"); observed != results.study.end() && observed->is_array())
-    for (const auto& name : *observed) order.push_back(name.get<std::string>());
-  for (const std::string& measure : summary_order)
+  const auto add = [&](const std::string& measure) {
     for (const auto& [name, ignored] : all)
-      if (name.starts_with(measure + "[") || name == measure) order.push_back(name);
+      if ((name == measure || name.starts_with(measure + "[")) &&
+          std::find(order.begin(), order.end(), name) == order.end())
+        order.push_back(name);
+  };
+  for (const asks::Ask& ask : asks::asks_of(results.study)) add(ask.has("on") ? ask.text("on") : ask.subject());
+  if (const auto observed = results.study.find("observe"); observed != results.study.end() && observed->is_array())
+    for (const auto& name : *observed) add(name.get<std::string>());
+  for (const std::string& measure : summary_order) add(measure);
   for (const auto& [name, ignored] : all)
-    if (name.find('[') == std::string::npos) order.push_back(name);
+    if (name.find('[') == std::string::npos) add(name);
+  const std::size_t shown = std::min(order.size(), most_summary_measures);
   HtmlTable table(
       "Between which values each measure is, over all methods at their finest step and mesh. Beside it: what "
-      "these move it by, as shares of the largest value. ?: a single step, which leaves that open.",
+      "these move it by, as shares of the largest value. ?: what the step leaves is not known, as of a single step." +
+          (shown < order.size() ? fmt::format(" {} more are in uncertainty.csv and limits.csv.", order.size() - shown)
+                                : std::string()),
       {{"measure"}, {"between", true}, {"methods", true}, {"step", true}, {"mesh", true}, {"sampling", true}});
-  std::vector<std::string> told;
-  for (const std::string& name : order) {
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == name; });
-    if (found == all.end() || table.size() == most_summary_measures) continue;
-    if (std::find(told.begin(), told.end(), name) != told.end()) continue;
-    told.push_back(name);
-    add_row(table, name, found->second);
-  }
+  for (std::size_t k = 0; k < shown; ++k)
+    add_row(table, order[k],
+            std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == order[k]; })->second);
   return table.html();
 }
 

@@ -51,3 +51,17 @@ TEST_CASE("stops without names have their rows too, and a scene without stops ha
   results.study["scene"]["stops"] = nullptr;
   CHECK(page(results).empty());
 }
+
+TEST_CASE("a file keeps what is asked first, and says how many measures it leaves out") {
+  StudyResults results = three_steps("bar");
+  for (CaseRecord& record : results.cases)
+    for (int k = 0; k < 9; ++k) record.measures.emplace_back("peak_force[s" + std::to_string(k) + "]", 1.0);
+  results.study["ask"] = {{{"effect", "time"}, {"on", "rms_force[bar]"}}};
+  const Choices study(results);
+  results.derived = {answers::limits_table(study, {"impulse"}), answers::uncertainty_table(study)};
+  const std::string html = page(results);
+  CHECK(html.find("rms force at bar") < html.find("impulse"));
+  // Ten peaks, the impulse and what is asked.
+  CHECK_THAT(html, Contains("4 more are in uncertainty.csv and limits.csv."));
+  CHECK_THAT(page(three_steps("bar")), !Contains("more are in"));
+}
