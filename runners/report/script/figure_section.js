@@ -31,7 +31,7 @@
             const shape = ricochet.plot.shapes[entry.symbol], open = entry.hollow || entry.symbol === "cross",
                   fill = open ? (entry.hollow ? "#ffffff" : "none") : entry.colour,
                   mark = shape ? '<path transform="translate(15 6)" d="' + shape(4) + '" fill="' + fill + '"' +
-                (open ? ' stroke="' + entry.colour + '" stroke-width="1.6"' : "") + "/>" :
+                    (open ? ' stroke="' + entry.colour + '" stroke-width="1.6"' : "") + "/>" :
                                  "";
             return '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' +
                 escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" +

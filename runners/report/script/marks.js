@@ -45,15 +45,8 @@
   };
 
   // A line with marks on its points.
-  const curve = ({name, colour, style}, size = 8, width = 1.6) => ({
-    mark: "line",
-    name,
-    colour,
-    symbol: symbolOf(style),
-    size,
-    width,
-    dash: dashOf(style)
-  });
+  const curve = ({name, colour, style}, size = 8, width = 1.6) =>
+      ({mark: "line", name, colour, symbol: symbolOf(style), size, width, dash: dashOf(style)});
   // The same with hollow marks where a row says so.
   const hollowCurve = (one, rows, size, width) =>
       ({...curve(one, size, width), ...(rows.some((row) => row.hollow) ? {hollow: (row) => row.hollow} : {})});

@@ -437,11 +437,14 @@ TEST_CASE("tables are copied in three forms, and a view is sent by its address",
       "figure.section.querySelectorAll('.legend [aria-pressed=false]').length]) : requestAnimationFrame(look); })(); "
       "})";
   const browser::Json first =
-      driven("reading-address", {{{"name", "first"}, {"page", page}, {"evaluate", {copied, chosen}}}})
+      driven("reading-address",
+             {{{"name", "first"},
+               {"page", page},
+               {"evaluate", {copied, chosen, "(ricochet.address.ofCases('status = done'), location.hash)"}}}})
           .at("first")
           .at("values");
   const std::string csv = first.at(0).at(0), markdown = first.at(0).at(1), latex = first.at(0).at(2),
-                    address = first.at(1);
+                    address = first.at(1), both = first.at(2);
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   CHECK(lines(csv) > 2);
   CHECK(lines(markdown) == lines(csv) + 1);
@@ -452,7 +455,14 @@ TEST_CASE("tables are copied in three forms, and a view is sent by its address",
       driven("reading-address", {{{"name", "sent"}, {"page", page + address}, {"evaluate", {shown}}},
                                  {{"name", "cases"},
                                   {"page", page + "#all-cases?filter=status+%3D+done"},
-                                  {"evaluate", {"document.getElementById('shown').textContent"}}}});
+                                  {"evaluate", {"document.getElementById('shown').textContent"}}},
+                                 {{"name", "both"},
+                                  {"page", page + both},
+                                  {"evaluate", {"document.getElementById('shown').textContent", shown}}}});
+  // What was set at one place stays where another is set later.
+  CHECK_THAT(both, Catch::Matchers::StartsWith("#all-cases?filter=") && Contains("&also=figure-energy"));
+  CHECK_THAT(again.at("both").at("values").at(0).get<std::string>(), Contains(" rows shown"));
+  CHECK(again.at("both").at("values").at(1) == browser::Json({1, 1, 1, true, 1}));
   CHECK(again.at("sent").at("values").at(0) == browser::Json({1, 1, 1, true, 1}));
   CHECK_THAT(again.at("cases").at("values").at(0).get<std::string>(), Contains(" rows shown"));
 }
