@@ -183,6 +183,8 @@ class Evidence {
 /// Whether a load of a scene is drawn from a spectrum.
 bool is_drawn(const Json& scene);
 
+/// Whether the step is among these columns, in s or by period.
+bool names_step(const std::vector<std::string>& columns);
 /// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.
 bool same_level(const Json& asked, const Json& own);
 
