@@ -28,20 +28,6 @@ struct Place {
   std::string text() const { return first == last ? std::to_string(first) : fmt::format("{} to {}", first, last); }
 };
 
-/// What is ranked, in one combination of all else, the largest first.
-struct Order {
-  std::string level;
-  std::vector<const Line*> lines;
-  std::vector<std::string> names;
-  std::size_t without = 0;                  ///< that ran and have no value: each may be larger than all others
-  std::vector<const Line*> untouched = {};  ///< of stops that nothing touches, which come last
-  /// Groups of neighbours that are not told apart, as places in `lines`.
-  std::vector<std::vector<std::size_t>> groups;
-  std::vector<std::size_t> aside;  ///< those told from none of some that are told apart without it
-  std::vector<Place> places;       ///< of each line
-  bool surely_first() const { return lines.size() > 1 && places.front().last == 1; }
-};
-
 /// Between what a line is told to lie; of one without an interval nothing is.
 double lowest(const Line& line) {
   return line.estimate().has_interval() ? line.estimate().least() : -INFINITY;
@@ -61,6 +47,7 @@ bool differs(const Line& a, const Line& b) {
 /// Which lines are above which, by their intervals, or by their differences where they are few. Lines by falling value.
 class Apart {
  public:
+  Apart() = default;
   explicit Apart(const std::vector<const Line*>& lines) {
     for (const Line* line : lines) {
       lowest_.push_back(lowest(*line));
@@ -73,6 +60,9 @@ class Apart {
   }
 
   bool above(std::size_t a, std::size_t b) const { return lowest_[a] > highest_[b] || differ_.contains({a, b}); }
+  bool told(std::size_t a, std::size_t b) const { return above(a, b) || above(b, a); }
+  /// Whether their differences alone tell them.
+  bool by_difference(std::size_t a, std::size_t b) const { return differ_.contains({a, b}); }
 
   std::vector<Place> places() const {
     const std::size_t n = lowest_.size();
@@ -106,9 +96,7 @@ class Apart {
     constexpr std::size_t fewest = 4;
     if (group.size() < fewest || group.size() > most_paired) return std::nullopt;
     for (const std::size_t one : group) {
-      if (std::any_of(group.begin(), group.end(),
-                      [&](std::size_t other) { return above(one, other) || above(other, one); }))
-        continue;
+      if (std::any_of(group.begin(), group.end(), [&](std::size_t other) { return told(one, other); })) continue;
       std::vector<std::size_t> rest = group;
       std::erase(rest, one);
       if (groups(rest).size() > 1) return one;
@@ -122,9 +110,25 @@ class Apart {
   std::set<std::pair<std::size_t, std::size_t>> differ_;
 };
 
+/// What is ranked, in one combination of all else, the largest first.
+struct Order {
+  std::string level;
+  std::vector<const Line*> lines;
+  std::vector<std::string> names;
+  std::size_t without = 0;                  ///< that ran and have no value: each may be larger than all others
+  std::vector<const Line*> untouched = {};  ///< of stops that nothing touches, which come last
+  /// Groups of neighbours that are not told apart, as places in `lines`.
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<std::size_t> aside;  ///< those told from none of some that are told apart without it
+  Apart apart;
+  std::vector<Place> places;  ///< of each line
+  bool surely_first() const { return lines.size() > 1 && places.front().last == 1; }
+};
+
 /// Tells lines by falling value apart as far as they are.
 void tell_apart(Order& order) {
-  const Apart apart(order.lines);
+  order.apart = Apart(order.lines);
+  const Apart& apart = order.apart;
   order.places = apart.places();
   std::vector<std::size_t> told(order.lines.size());
   std::iota(told.begin(), told.end(), 0);
@@ -338,13 +342,9 @@ class Ranking {
   static std::string why_together(const Order& order, std::size_t k) {
     const Estimate& own = order.lines[k]->estimate();
     if (!own.has_interval()) return own.unsettled().empty() ? own.unknown() : "it " + own.unsettled();
-    const auto meets = [&](std::size_t other) {
-      return other != k && lowest(*order.lines[other]) <= highest(*order.lines[k]) &&
-             lowest(*order.lines[k]) <= highest(*order.lines[other]);
-    };
     std::string moving;
     for (std::size_t other = 0; other < order.lines.size(); ++other) {
-      if (!meets(other)) continue;
+      if (other == k || order.apart.told(k, other)) continue;
       const Estimate& one = order.lines[other]->estimate();
       if (!one.has_interval()) return order.names[other] + " has no interval";
       if (own.low() <= one.high() && one.low() <= own.high())
@@ -363,8 +363,7 @@ class Ranking {
         row.reason = without_value(order);
       else if (row.reason.empty() && place.first != place.last)
         row.reason = is_idle(*order.lines[k]) ? "nothing is touched" : why_together(order, k);
-      else if (row.reason.empty() && k + 1 < order.lines.size() &&
-               lowest(*order.lines[k]) <= highest(*order.lines[k + 1]))
+      else if (row.reason.empty() && order.apart.by_difference(k, k + 1))
         row.reason = "by its difference from the next at equal steps and seeds";
       out.rows.push_back(std::move(row));
     }

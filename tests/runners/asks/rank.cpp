@@ -243,3 +243,23 @@ TEST_CASE(
   CHECK(none.passes == Verdict::open);
   CHECK(none.reason == "nothing is touched");
 }
+
+TEST_CASE("asks: what a difference tells apart is no reason to have no place") {
+  // The first and the last level have the same draws, between them one that draws by itself.
+  const std::vector<double> draws = {-1, 1, -0.6, 0.7}, own = {0.9, -1, 0.8, -0.6};
+  const StudyResults results = synthetic::full_factorial(
+      {{"mass", {"m0", "m1", "m2"}}, {"seed", {"1", "2", "3", "4"}}}, {4e-3, 2e-3, 1e-3},
+      [&](const std::vector<std::size_t>& at, double h) {
+        return 10 + h - 0.1 * static_cast<double>(at[0]) + (at[0] == 1 ? own : draws)[at[1]];
+      },
+      "impulse");
+  const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(answered.sentence);
+  REQUIRE(answered.rows.size() == 3);
+  for (const VerdictRow& row : answered.rows) {
+    INFO(row.level << " " << row.verdict);
+    if (row.level == "m1") continue;
+    CHECK(row.verdict == (row.level == "m0" ? "1 to 2" : "2 to 3"));
+    CHECK(row.reason == "its difference from m1 is not told from zero");
+  }
+}
