@@ -148,8 +148,7 @@ const TableType<StopRange>& uncertainty_type() {
         .add({"high", "", "The largest and the sum of the three."}, &StopRange::high)
         .add({"verdict", "",
               "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: of a single step, or "
-              "of what "
-              "grows without bound."},
+              "of what grows without bound."},
              &StopRange::verdict)
         .add({"sentence", "", "The same in words."}, &StopRange::sentence);
     return TableType<StopRange>{"uncertainty", "One measure of one stop over all methods: between which values it is.",

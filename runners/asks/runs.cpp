@@ -15,7 +15,7 @@ struct Ending {
   std::string status, reason;
   bool done = false, alike = true;  // whether the reason is that of each, or has the numbers of the first
   std::vector<const CaseRecord*> cases = {};
-  std::string said() const { return (alike ? "" : "the first: ") + reason; }
+  std::string of_first(const std::string& text) const { return (alike ? "" : "the first: ") + text; }
 };
 
 /// How cases ended, by status and reason; those that differ in numbers alone are one.
@@ -48,14 +48,13 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
     row.value = static_cast<double>(one.cases.size());
     row.unit = "1";
     row.verdict = one.status;
-    row.reason = one.said();
+    row.reason = one.of_first(one.reason);
     row.cases = one.cases.size();
     out.rows.push_back(std::move(row));
     if (one.done)
       done += one.cases.size();
     else {
-      others.push_back(fmt::format("{} {} ({}{})", one.cases.size(), one.status,
-                                   one.alike ? "" : "the first: ", short_reason(one.reason)));
+      others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, one.of_first(short_reason(one.reason))));
       by_status[one.status] += one.cases.size();
       wrong += went_wrong(*one.cases.front()) ? one.cases.size() : 0;
     }

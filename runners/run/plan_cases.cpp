@@ -93,23 +93,27 @@ std::vector<PlanOutcome> CasePlanner::plan_all(const std::vector<StudyCase>& cas
   std::atomic<bool> stop{false};
   std::mutex failing;
   std::map<std::size_t, std::exception_ptr> failures;
-  const auto plan_those = [&](bool foreign) {
-    for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
-      if (cases[i].excluded || uses_foreign(cases[i]) != foreign) continue;
-      try {
-        outcomes[i] = plan(cases[i]);
-        done(++planned);
-      } catch (...) {
-        const std::lock_guard guard(failing);
-        failures[i] = std::current_exception();
-        stop = true;
-      }
+  const auto plan_one = [&](std::size_t i) {
+    try {
+      outcomes[i] = plan(cases[i]);
+      done(++planned);
+    } catch (...) {
+      const std::lock_guard guard(failing);
+      failures[i] = std::current_exception();
+      stop = true;
     }
   };
-  on_threads(at_once, [&] { plan_those(false); });
+  std::vector<char> foreign(cases.size(), 0);
+  on_threads(at_once, [&] {
+    for (std::size_t i = next++; i < cases.size() && !stop; i = next++) {
+      if (cases[i].excluded) continue;
+      foreign[i] = uses_foreign(cases[i]) ? 1 : 0;
+      if (foreign[i] == 0) plan_one(i);
+    }
+  });
   // A process is not forked while others of its threads are at work.
-  next = 0;
-  plan_those(true);
+  for (std::size_t i = 0; i < cases.size() && !stop; ++i)
+    if (foreign[i] != 0) plan_one(i);
   if (!failures.empty()) std::rethrow_exception(failures.begin()->second);
   return outcomes;
 }

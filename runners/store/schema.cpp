@@ -35,8 +35,8 @@ CREATE TABLE cases(
   steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
 )sql";
 
-// What belongs to a case; {0}: the prefix of its tables, {1}: the key of its case. The rows lie in their key, which is
-// half the size and time of rows beside an index.
+// What belongs to a case; {0}: the prefix of its tables, {1}: the key of its case. The rows lie in their key: no
+// index beside them repeats it.
 constexpr const char* kRowTables = R"sql(
 CREATE TABLE {0}axes(
   case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,

@@ -156,12 +156,12 @@ std::string summary_measures_html(const Choices& choices) {
   for (auto& one : of_cases(answers::limits_type().read(results.derived)))
     if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.first == one.first; }))
       all.push_back(std::move(one));
-  std::vector<std::string> order;
+  std::vector<const SummaryMeasures::value_type*> order;
   const auto add = [&](const std::string& measure) {
-    for (const auto& [name, ignored] : all)
-      if ((name == measure || name.starts_with(measure + "[")) &&
-          std::find(order.begin(), order.end(), name) == order.end())
-        order.push_back(name);
+    for (const auto& one : all)
+      if ((one.first == measure || one.first.starts_with(measure + "[")) &&
+          std::find(order.begin(), order.end(), &one) == order.end())
+        order.push_back(&one);
   };
   for (const asks::Ask& ask : asks::asks_of(results.study)) add(ask.has("on") ? ask.text("on") : ask.subject());
   if (const auto observed = results.study.find("observe"); observed != results.study.end() && observed->is_array())
@@ -176,9 +176,7 @@ std::string summary_measures_html(const Choices& choices) {
           (shown < order.size() ? fmt::format(" {} more are in uncertainty.csv and limits.csv.", order.size() - shown)
                                 : std::string()),
       {{"measure"}, {"between", true}, {"methods", true}, {"step", true}, {"mesh", true}, {"sampling", true}});
-  for (std::size_t k = 0; k < shown; ++k)
-    add_row(table, order[k],
-            std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == order[k]; })->second);
+  for (std::size_t k = 0; k < shown; ++k) add_row(table, order[k]->first, order[k]->second);
   return table.html();
 }
 
